@@ -27,6 +27,7 @@ module mfv_body_pair
       procedure :: resize
       procedure :: entries
       procedure :: products
+      procedure :: normal_by_shear
       procedure :: deforms
       procedure :: body_displacements
    end type body_pair_type
@@ -138,6 +139,23 @@ contains
       if (.not. self%has_block(block_wt)) by_block(:, block_wt) = 0.0_wp
       if (.not. self%has_block(block_up)) by_block(:, block_up) = 0.0_wp
    end subroutine products
+
+   !> See mfv_compliance.
+   subroutine normal_by_shear(self, shear, normal)
+      class(body_pair_type), intent(in) :: self
+      real(wp), intent(in) :: shear(:)
+      real(wp), intent(out) :: normal(:)
+      real(wp) :: by_body(size(shear))
+      integer :: i
+
+      normal = 0.0_wp
+      if (.not. self%has_block(block_wt)) return
+      do i = 1, 2
+         if (.not. self%deforms(i)) cycle
+         call self%body(i)%compliance%normal_by_shear(shear, by_body)
+         normal = normal + merge(1.0_wp, upper_sign(block_wt), i == lower_body)*by_body
+      end do
+   end subroutine normal_by_shear
 
    !> Surface displacements of one body, into it and to the right, length, by the tractions on the lower body; zero for a
    !> rigid one. Shapes (nodes).

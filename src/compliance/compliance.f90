@@ -37,6 +37,7 @@ module mfv_compliance
       procedure(entries_interface), deferred :: entries
       procedure(products_interface), deferred :: products
       procedure :: displacements
+      procedure :: normal_by_shear
       procedure :: signature
       procedure :: choose_blocks
       procedure :: one_way
@@ -84,6 +85,17 @@ contains
       normal = by_block(:, block_wp) + by_block(:, block_wt)
       tangential = by_block(:, block_ut) + by_block(:, block_up)
    end subroutine displacements
+
+   !> The normal displacements of every node by `shear` alone, length, shape (nodes): the product with C_wt.
+   subroutine normal_by_shear(self, shear, normal)
+      class(compliance_type), intent(in) :: self
+      real(wp), intent(in) :: shear(:)
+      real(wp), intent(out) :: normal(:)
+      real(wp) :: by_block(size(shear), 4)
+
+      call self%products(0.0_wp*shear, shear, by_block)
+      normal = by_block(:, block_wt)
+   end subroutine normal_by_shear
 
    !> Constants of the coupling blocks: two bodies with equal signatures do not couple. Zero without coupling; huge by
    !> default, which no other body's signature equals.

@@ -37,6 +37,7 @@ module mfv_half_plane
       procedure :: kernels_at
       procedure :: entries
       procedure :: products
+      procedure :: normal_by_shear
       procedure :: signature
    end type half_plane_type
 
@@ -146,6 +147,16 @@ contains
       if (self%has_block(block_up)) call multiply_steps(-self%cross, pressure, by_block(:, block_up))
       if (.not. self%has_block(block_ut)) by_block(:, block_ut) = 0.0_wp
    end subroutine products
+
+   !> See mfv_compliance.
+   subroutine normal_by_shear(self, shear, normal)
+      class(half_plane_type), intent(in) :: self
+      real(wp), intent(in) :: shear(:)
+      real(wp), intent(out) :: normal(:)
+
+      normal = 0.0_wp
+      if (self%has_block(block_wt)) call multiply_steps(self%cross, shear, normal)
+   end subroutine normal_by_shear
 
    !> displacement(i) = cross (sum of tractions left of i - sum right of i).
    pure subroutine multiply_steps(cross, traction, displacement)

@@ -45,6 +45,8 @@ module mfv_contact_system
       type(load_type) :: load(motion_count)
       !> Rates of one kind, such as those of the loads, resemble each other: a first guess of iterative solvers.
       integer :: kind = rates_of_loads
+      !> Whether only rates are wanted: the state may be the first guess.
+      logical :: rates_only = .false.
    end type constraints_type
 
    !> Prescribed values of the state, or of its rates per unit of load.

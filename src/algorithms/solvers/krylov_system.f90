@@ -103,13 +103,17 @@ contains
       call prepare_preconditioner(self, model, singular)
       if (singular) return
 
-      call find_prescribed(constraints, model, .false., prescribed)
-      right = right_side(self, model, constraints%status, prescribed)
-      unknowns = [start%pressure(self%contact)/self%stress, start%shear(self%held)/self%stress, &
-                  start%motion(self%free)/self%motion_unit(self%free)]
-      call iterate(self, model, right, self%tolerance/margin, unknowns, singular)
-      if (singular) return
-      response%state = fields_of(self, model, prescribed, right, unknowns)
+      if (constraints%rates_only) then
+         call response%state%copy_from(start)
+      else
+         call find_prescribed(constraints, model, .false., prescribed)
+         right = right_side(self, model, constraints%status, prescribed)
+         unknowns = [start%pressure(self%contact)/self%stress, start%shear(self%held)/self%stress, &
+                     start%motion(self%free)/self%motion_unit(self%free)]
+         call iterate(self, model, right, self%tolerance/margin, unknowns, singular)
+         if (singular) return
+         response%state = fields_of(self, model, prescribed, right, unknowns)
+      end if
 
       call find_prescribed(constraints, model, .true., prescribed)
       right = right_side(self, model, constraints%status, prescribed)
@@ -410,8 +414,7 @@ contains
       call self%gmres%start(rows)
       do while (self%gmres%residual() > target .and. .not. self%gmres%is_full())
          call self%gmres%direction(vector)
-         call multiply(self, model, vector, rows)
-         call precondition(self, model, rows)
+         call multiply_preconditioned(self, model, vector, rows)
          call self%gmres%extend(rows)
          self%iterations = self%iterations + 1
       end do
@@ -438,18 +441,34 @@ contains
       rows = right%rows - rows
    end subroutine find_residual
 
-   !> Product of the matrix with a change of the unknowns.
-   subroutine multiply(self, model, unknowns, rows)
+   !> Product of the preconditioned matrix with a change of the unknowns. If the inverses are exact, it is the change itself plus what
+   !> the preconditioner leaves out: normal displacements by the shear, and those by resultants that depend on the datum.
+   subroutine multiply_preconditioned(self, model, unknowns, rows)
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       real(wp), intent(in) :: unknowns(:)
       real(wp), intent(out) :: rows(:)
       real(wp), parameter :: at_rest(motion_count) = 0.0_wp
+      real(wp) :: constant
+      logical :: exact
+      integer :: m, s
 
       call spread_tractions(self, unknowns)
-      call displace(self, model)
-      call collect_rows(self, motion_of(self, at_rest, unknowns), rows)
-   end subroutine multiply
+      exact = self%preconditioner%is_exact(constant)
+      if (exact) then
+         m = size(self%contact)
+         s = size(self%held)
+         call model%compliance%normal_by_shear(self%shear, self%normal)
+         rows(:m) = self%stress/self%length*self%normal(self%contact) + constant*sum(unknowns(:m))
+         rows(m + 1:m + s) = constant*sum(unknowns(m + 1:m + s))
+         rows(m + s + 1:) = 0.0_wp
+      else
+         call displace(self, model)
+         call collect_rows(self, motion_of(self, at_rest, unknowns), rows)
+      end if
+      call precondition(self, model, rows)
+      if (exact) rows = rows + unknowns
+   end subroutine multiply_preconditioned
 
    !> Tractions of all nodes from the unknowns; slipping nodes without offset.
    subroutine spread_tractions(self, unknowns)

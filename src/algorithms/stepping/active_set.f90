@@ -25,6 +25,9 @@ module mfv_active_set
    real(wp), parameter :: round_off = 1.0e-11_wp
    !> Most linear solves at one load.
    integer, parameter :: most_solves = 60
+   !> Relative error of tractions that intermediate solutions may have, until only a `few` nodes change.
+   real(wp), parameter :: intermediate = 1.0e-5_wp
+   integer, parameter :: few = 2
    !> Most corrections of the slip that is expected of open nodes.
    integer, parameter :: most_looks = 3
 
@@ -47,10 +50,13 @@ contains
       integer, dimension(size(path%state%status)) :: wanted
       integer :: tried(size(path%state%status), most_solves)
       real(wp), dimension(size(path%state%status)) :: hold, ahead, before
-      logical :: possible, by_edges
+      real(wp) :: allowed
+      logical :: possible, by_edges, rough
       integer :: solve, first, looks
 
       found = .false.
+      allowed = path%system%allowed
+      rough = present(held) .and. allowed > 0.0_wp .and. allowed < intermediate
       by_edges = .true.
       first = 1
       hold = path%state%fields%slip()
@@ -63,10 +69,17 @@ contains
          call constrain(path, segment, done, constraints, possible)
          if (.not. possible) return
          path%state%stuck_slip = hold
+         path%system%allowed = merge(intermediate, allowed, rough)
          call solve_with_fronts(path, constraints, path%state%stuck_slip, ahead, fields, possible, held)
+         path%system%allowed = allowed
          if (.not. possible) return
          call find_wanted(path, segment, fields, wanted, held)
          found = all(wanted == path%state%status)
+         if (rough .and. count(wanted /= path%state%status) <= few) then
+            rough = .false.
+            first = solve + 1
+            if (found) cycle
+         end if
          if (present(held)) then
             before = ahead
             if (all(in_contact(wanted) .eqv. in_contact(path%state%status)) .and. &
@@ -231,7 +244,8 @@ contains
 
       call path%loads_at(segment, done, constraints)
       call path%set_rows(constraints, .false.)
-      if (done > 0.0_wp) constraints%kind = rates_at_end
+      constraints%kind = rates_at_end
+      constraints%rates_only = .true.
       call path%system%solve(path%model, constraints, fields, response, singular)
       found = .not. singular
       if (found) rates = response%rate

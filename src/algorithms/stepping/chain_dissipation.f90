@@ -14,15 +14,28 @@
 !> The errors of the two sums are of different origin, and their difference is about as large as either. If contact begins, a third
 !> sum is better than both: the rates -tau ds/df at the ends of increments, by Simpson's rule. While a contact grows in proportion
 !> to its shape, its dissipation goes as f^4, and the rule is exact.
+!>
+!> Otherwise, with rates at both ends of the interval, the smooth sum is integrated with Hermite's polynomials of the fifth degree
+!> through the values and slopes at three states each. In Mindlin's problem the shift goes as (1 - q) ln(1 - q), q = Q/(mu P), and
+!> four such intervals up to q = 0.8 give the dissipation to 3e-4, where Simpson's rule is off by 2e-3.
 module mfv_chain_dissipation
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: wp
+   use mfv_lapack, only: dgesv
+   use mfv_motions, only: motion_count
    use mfv_node_status
    implicit none
    private
-   public :: chain_dissipation, dissipation_by_rates, node_wise_dissipation
+   public :: sample_type, chain_dissipation, dissipation_by_rates, dissipation_by_slopes, node_wise_dissipation, &
+             straight_dissipation
+
+   !> A state on the path: statuses, fields, and their rates per unit of the interval.
+   type :: sample_type
+      integer, allocatable :: status(:)
+      type(contact_fields_type) :: fields, rates
+   end type sample_type
 
 contains
 
@@ -61,12 +74,12 @@ contains
          integer :: i
 
          if (increments == stride) then
-            composite = straight(start, after(increments))
+            composite = straight_dissipation(model, start, after(increments))
             return
          end if
-         composite = curved(start, after(stride), after(2*stride))
+         composite = curved_dissipation(model, start, after(stride), after(2*stride))
          do i = 2*stride, increments - 2*stride, 2*stride
-            composite = composite + curved(after(i), after(i + stride), after(i + 2*stride))
+            composite = composite + curved_dissipation(model, after(i), after(i + stride), after(i + 2*stride))
          end do
       end function composite
 
@@ -74,38 +87,129 @@ contains
       real(wp) function trapezoidal()
          integer :: i
 
-         trapezoidal = straight(start, after(1))
+         trapezoidal = straight_dissipation(model, start, after(1))
          do i = 2, increments
-            trapezoidal = trapezoidal + straight(after(i - 1), after(i))
+            trapezoidal = trapezoidal + straight_dissipation(model, after(i - 1), after(i))
          end do
       end function trapezoidal
-
-      !> -int (tau ds + p dg) along a straight line.
-      real(wp) function straight(a, b)
-         type(contact_fields_type), intent(in) :: a, b
-
-         straight = -0.5_wp*model%force((a%shear + b%shear)*(b%slip() - a%slip()) + &
-                                        (a%pressure + b%pressure)*(model%gap(b) - model%gap(a)))
-      end function straight
-
-      !> -int (tau ds + p dg) along parabolas through three evenly spaced states.
-      real(wp) function curved(a, b, c)
-         type(contact_fields_type), intent(in) :: a, b, c
-
-         curved = -model%force(along(a%shear, b%shear, c%shear, a%slip(), b%slip(), c%slip()) + &
-                               along(a%pressure, b%pressure, c%pressure, model%gap(a), model%gap(b), model%gap(c)))
-      end function curved
-
-      !> int f dg along parabolas through three evenly spaced values of f and g.
-      elemental real(wp) function along(f1, f2, f3, g1, g2, g3)
-         real(wp), intent(in) :: f1, f2, f3, g1, g2, g3
-         real(wp) :: slope, turn
-
-         slope = 0.5_wp*(g3 - g1)
-         turn = 0.5_wp*((g3 - g2) - (g2 - g1))
-         along = 2.0_wp*(f2*slope + ((f3 - f1)*turn + 0.5_wp*((f3 - f2) - (f2 - f1))*slope)/3.0_wp)
-      end function along
    end subroutine chain_dissipation
+
+   !> -int (tau ds + p dg) along parabolas through three evenly spaced states.
+   pure real(wp) function curved_dissipation(model, a, b, c) result(work)
+      class(contact_model_type), intent(in) :: model
+      type(contact_fields_type), intent(in) :: a, b, c
+
+      work = -model%force(along(a%shear, b%shear, c%shear, a%slip(), b%slip(), c%slip()) + &
+                            along(a%pressure, b%pressure, c%pressure, model%gap(a), model%gap(b), model%gap(c)))
+   end function curved_dissipation
+
+   !> int f dg along parabolas through three evenly spaced values of f and g.
+   elemental real(wp) function along(f1, f2, f3, g1, g2, g3)
+      real(wp), intent(in) :: f1, f2, f3, g1, g2, g3
+      real(wp) :: slope, turn
+
+      slope = 0.5_wp*(g3 - g1)
+      turn = 0.5_wp*((g3 - g2) - (g2 - g1))
+      along = 2.0_wp*(f2*slope + ((f3 - f1)*turn + 0.5_wp*((f3 - f2) - (f2 - f1))*slope)/3.0_wp)
+   end function along
+
+   !> -int (tau ds + p dg) along a straight line from the fields `a` to the fields `b`; force.
+   pure real(wp) function straight_dissipation(model, a, b) result(work)
+      class(contact_model_type), intent(in) :: model
+      type(contact_fields_type), intent(in) :: a, b
+
+      work = -0.5_wp*model%force((a%shear + b%shear)*(b%slip() - a%slip()) + &
+                                 (a%pressure + b%pressure)*(model%gap(b) - model%gap(a)))
+   end function straight_dissipation
+
+   !> The friction dissipation from evenly spaced states with their rates, of even number without the first; force. `error`: its
+   !> estimated error, force: the difference to polynomials of the third degree, or that due to edges of zones which move node by
+   !> node, by the number of slipping nodes.
+   !> `motion_work`: the work of the forces of all motions, force.
+   subroutine dissipation_by_slopes(model, samples, changes, work, error, motion_work)
+      class(contact_model_type), intent(in) :: model
+      type(sample_type), intent(in) :: samples(0:)
+      integer, intent(in) :: changes
+      real(wp), intent(out) :: work, error, motion_work(motion_count)
+      real(wp), parameter :: noise = 2.0_wp
+      real(wp) :: of_two(4, 4), of_three(6, 6), half, straight
+      integer :: i, n
+
+      n = ubound(samples, 1)
+      half = 0.5_wp/n
+      call integrate_polynomials([-1.0_wp, 1.0_wp], of_two)
+      call integrate_polynomials([-1.0_wp, 0.0_wp, 1.0_wp], of_three)
+      work = 0.0_wp
+      straight = 0.0_wp
+      motion_work = 0.0_wp
+      do i = 0, n - 2, 2
+         call add_interval(samples(i:i + 2), of_three, 2.0_wp*half, work, motion_work)
+      end do
+      do i = 0, n - 1
+         straight = straight + straight_dissipation(model, samples(i)%fields, samples(i + 1)%fields)
+      end do
+      error = noise*abs(work - straight)/max(changes, 1)
+
+   contains
+
+      !> Add -int (tau ds + p dg) and int F dy over an interval of the length 2*`half`. `weight`: int f dg for unit values and slopes.
+      subroutine add_interval(samples, weight, half, work, motion_work)
+         type(sample_type), intent(in) :: samples(:)
+         real(wp), intent(in) :: weight(:, :), half
+         real(wp), intent(inout) :: work
+         real(wp), intent(inout), optional :: motion_work(:)
+         real(wp), allocatable, dimension(:, :) :: shear, slip, pressure, gap, force, motion
+         real(wp) :: stuck(size(model%width))
+         integer :: i, k
+
+         k = size(samples)
+         allocate (shear(size(model%width), 2*k), slip(size(model%width), 2*k), pressure(size(model%width), 2*k), &
+                   gap(size(model%width), 2*k), force(motion_count, 2*k), motion(motion_count, 2*k))
+         do i = 1, k
+            associate (fields => samples(i)%fields, rates => samples(i)%rates)
+               shear(:, i) = fields%shear
+               shear(:, k + i) = half*rates%shear
+               slip(:, i) = fields%slip()
+               slip(:, k + i) = half*rates%slip()
+               pressure(:, i) = fields%pressure
+               pressure(:, k + i) = half*rates%pressure
+               gap(:, i) = model%gap(fields)
+               gap(:, k + i) = half*(model%gap(fields%plus(1.0_wp, rates)) - gap(:, i))
+               force(:, i) = fields%force
+               force(:, k + i) = half*rates%force
+               motion(:, i) = fields%motion
+               motion(:, k + i) = half*rates%motion
+            end associate
+         end do
+         stuck = sum(shear*matmul(slip, transpose(weight)) + pressure*matmul(gap, transpose(weight)), dim=2)
+         work = work - model%force(stuck)
+         if (present(motion_work)) motion_work = motion_work + sum(force*matmul(motion, transpose(weight)), dim=2)
+      end subroutine add_interval
+   end subroutine dissipation_by_slopes
+
+   !> int f dg from -1 to 1 for the polynomials f (rows) and g (columns) that have the value or the slope 1 at one of the `places`,
+   !> and otherwise values and slopes 0 there; shape (2*places, 2*places), values first.
+   subroutine integrate_polynomials(places, weight)
+      real(wp), intent(in) :: places(:)
+      real(wp), intent(out) :: weight(:, :)
+      real(wp), dimension(size(weight, 1), size(weight, 1)) :: conditions, coefficients, powers
+      integer :: i, j, k, info, pivots(size(weight, 1))
+
+      k = size(places)
+      coefficients = 0.0_wp
+      powers = 0.0_wp
+      do j = 0, 2*k - 1
+         conditions(:k, j + 1) = places**j
+         conditions(k + 1:, j + 1) = 0.0_wp
+         if (j > 0) conditions(k + 1:, j + 1) = j*places**(j - 1)
+         coefficients(j + 1, j + 1) = 1.0_wp
+         do i = 0, 2*k - 1
+            if (modulo(i + j, 2) == 1) powers(i + 1, j + 1) = 2.0_wp*j/(i + j)
+         end do
+      end do
+      call dgesv(2*k, 2*k, conditions, 2*k, pivots, coefficients, 2*k, info)
+      weight = matmul(transpose(coefficients), matmul(powers, coefficients))
+   end subroutine integrate_polynomials
 
    !> The friction dissipation of a contact that begins, force, by its rates at the ends of increments that are even in the
    !> half-width, per unit of load over the interval, shape (increments), a power of two. `error`: its estimated error, force: the

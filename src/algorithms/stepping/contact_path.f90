@@ -18,6 +18,7 @@ module mfv_contact_path
                           control_displacement
    use mfv_node_status
    use mfv_observer, only: observer_type
+   use mfv_recent_intervals, only: recent_intervals_type
    use mfv_rolling, only: rolling_type
    use mfv_scene, only: algorithm_mfv, stepping_leap
    use mfv_slip_zones, only: widest_slip_zone
@@ -67,6 +68,8 @@ module mfv_contact_path
       type(contact_state_type) :: before
       type(parameter_type), allocatable :: parameters(:)
       type(history_type) :: history
+      !> Large increments: first guesses for intervals that repeat.
+      type(recent_intervals_type) :: recent
       !> Whether every event is recorded, or only what the caller records.
       logical :: record_events = .true.
       !> Tangential force and shift at the start of the segment, until the first increment is known.

@@ -1,0 +1,411 @@
+!> A load interval in equal large increments (a chain), and states between their ends (samples).
+!>
+!> Each increment starts from the end of the one before. Tractions depend on the path only through the slip at which nodes hold
+!> that stick within an increment (mfv_sticking_front), so that few increments suffice for them. The dissipation needs more states:
+!> each is found as one increment from the end of the chain's increment before it, without changing the chain.
+module mfv_chain
+   use mfv_active_set, only: find_rates
+   use mfv_chain_dissipation, only: node_wise_dissipation, sample_type
+   use mfv_compliance, only: block_wt
+   use mfv_contact_fields, only: contact_fields_type
+   use mfv_contact_path, only: contact_path_type, segment_type
+   use mfv_contact_state, only: contact_state_type
+   use mfv_kinds, only: wp
+   use mfv_motions, only: motion_count, motion_approach, motion_shift, control_force
+   use mfv_node_status
+   use mfv_straight, only: find_statuses_on_mesh
+   implicit none
+   private
+   public :: chain_type, make_chain, add_samples, add_node_wise_work, find_rates_after
+
+   !> Where contact begins, event stepping resolves the touching of single nodes. The shear tractions next to that point, or next to
+   !> the edge of a contact without slip zones, differ by up to this, relative to the largest traction, over the number of nodes in
+   !> contact (0.05 to 0.5 with 50 to 800 nodes in contact, nu from 0 to 0.4 and mu from 0.3 to 1.5); next to a slip zone of fewer
+   !> than `resolved` nodes by up to `error_unresolved`.
+   integer, parameter :: resolved = 3
+   real(wp), parameter :: error_unresolved = 10.0_wp
+   real(wp), parameter :: error_at_start = 0.5_wp
+   !> The same where nodes touch later under a changing normal load, and where fewer than `resolved` nodes slip at an edge: the
+   !> outermost node may have closed and stuck or not (up to 1.5 with 80 to 400 nodes). Under a constant one, contact grows where it
+   !> slips.
+   real(wp), parameter :: error_of_growth = 1.5_wp
+
+   type :: chain_type
+      integer :: increments = 0
+      !> States before each increment, with the statuses of that increment; fields after it; shape (increments).
+      type(contact_state_type), allocatable :: before(:)
+      type(contact_fields_type), allocatable :: after(:)
+      !> Evenly spaced states from the start to the end, shape (0:samples), a multiple of `increments`; not allocated: none yet.
+      type(sample_type), allocatable :: samples(:)
+      !> Friction dissipation of each increment, force/length, shape (nodes, increments).
+      real(wp), allocatable :: friction_work(:, :)
+      !> Whether the statuses were found; if not, whether only the mesh was too short.
+      logical :: found = .false., exceeded = .false.
+      !> Whether contact begins in the interval, and whether the nodes that hold from its start are known.
+      logical :: begins = .false., fronts = .false.
+      !> Nodes that hold from the start of the last increment, if known, shape (nodes).
+      logical, allocatable :: held(:)
+      !> Linear solves, and changes of status that event stepping would make one by one.
+      integer :: solves = 0, changes = 0
+      !> Estimated errors of the final tractions, and their part where contact begins, force/length^2; of the dissipation, force;
+      !> the dissipation, force, and the largest traction, force/length^2.
+      real(wp) :: traction_error = 0.0_wp, start_error = 0.0_wp, work_error = 0.0_wp, work = 0.0_wp, traction = 0.0_wp
+      !> The dissipation by node_wise_dissipation and its estimated error, force.
+      real(wp) :: node_wise = 0.0_wp, node_wise_error = 0.0_wp
+      !> The former with half as many increments or samples, force.
+      real(wp) :: coarse_node_wise = 0.0_wp
+      !> Work of the forces of all motions by the samples, force.
+      real(wp) :: motion_work(motion_count) = 0.0_wp
+   end type chain_type
+
+contains
+
+   !> An interval in a number of equal `increments`. `start`: its start with the statuses as the loads begin to change; without
+   !> statuses if they are not known. `coarser`: a chain of the same interval, for a first guess of the statuses. `path` is
+   !> unchanged.
+   subroutine make_chain(path, interval, increments, start, chain, coarser)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: interval
+      integer, intent(in) :: increments
+      type(sample_type), intent(in) :: start
+      type(chain_type), intent(out) :: chain
+      type(chain_type), intent(in), optional :: coarser
+      type(contact_state_type) :: present_state
+      logical, allocatable :: held(:)
+      integer, allocatable :: status(:)
+      integer :: i
+
+      present_state = path%state
+      chain%increments = increments
+      allocate (chain%before(increments), chain%after(increments))
+      allocate (chain%friction_work(size(present_state%status), increments), source=0.0_wp)
+      chain%fronts = allocated(start%status)
+      chain%begins = .not. any(in_contact(present_state%status))
+      chain%solves = -path%system%solves
+      do i = 1, increments
+         status = path%state%status
+         if (chain%fronts) held = holding_before(chain, start, i)
+         if (i == 1) call guess_slip(path, interval, reached(chain, i))
+         chain%after(i) = path%state%fields
+         if (chain%fronts .and. .not. chain%begins) call guess_as_before(path, interval, i, increments, chain%after(i))
+         if (present(coarser)) call guess_from(path, coarser, i, increments, chain%after(i))
+         call find_statuses_on_mesh(path, interval, reached(chain, i), chain%after(i), chain%found, chain%exceeded, held)
+         if (.not. chain%found) exit
+         chain%changes = chain%changes + count_changes(status, path%state%status)
+         chain%before(i) = path%state
+         call add_node_wise_work(path, chain, i, path%state, chain%after(i))
+         path%state%fields = chain%after(i)
+         chain%traction = max(chain%traction, maxval(abs(chain%after(i)%pressure)), maxval(abs(chain%after(i)%shear)))
+      end do
+      chain%solves = chain%solves + path%system%solves
+      if (allocated(held)) call move_alloc(held, chain%held)
+      if (chain%found) call find_start_error(path, present_state%status, interval, chain)
+      path%state = present_state
+   end subroutine make_chain
+
+   !> Nodes that hold from the start of increment `i`, shape (nodes).
+   pure function holding_before(chain, start, i) result(held)
+      type(chain_type), intent(in) :: chain
+      type(sample_type), intent(in) :: start
+      integer, intent(in) :: i
+      logical, allocatable :: held(:)
+
+      if (i == 1) then
+         held = start%status == node_stick
+      else
+         held = chain%before(i - 1)%status == node_stick
+      end if
+   end function holding_before
+
+   !> Fraction of the interval after i increments. If contact begins, increments are even in the contact width, which for a
+   !> parabola grows with the square root of the load.
+   pure real(wp) function reached(chain, i)
+      type(chain_type), intent(in) :: chain
+      integer, intent(in) :: i
+
+      reached = real(i, wp)/real(chain%increments, wp)
+      if (chain%begins) reached = reached**2
+   end function reached
+
+   !> Add the dissipation from the state `before` to the fields `after`, in increment `i` of a chain, node by node.
+   subroutine add_node_wise_work(path, chain, i, before, after)
+      class(contact_path_type), intent(in) :: path
+      type(chain_type), intent(inout) :: chain
+      integer, intent(in) :: i
+      type(contact_state_type), intent(in) :: before
+      type(contact_fields_type), intent(in) :: after
+      real(wp) :: work(size(before%status)), error
+
+      call node_wise_dissipation(path%model, before, after, path%system%tolerance, work, error)
+      chain%friction_work(:, i) = chain%friction_work(:, i) + work
+      chain%node_wise = chain%node_wise + path%model%force(work)
+      chain%node_wise_error = chain%node_wise_error + error
+   end subroutine add_node_wise_work
+
+   !> If increment `i` ends where one of a coarser chain does, start from the statuses and `fields` there: from the statuses of all
+   !> nodes if the slip of touching nodes follows from the fronts.
+   subroutine guess_from(path, coarser, i, increments, fields)
+      class(contact_path_type), intent(inout) :: path
+      type(chain_type), intent(in) :: coarser
+      integer, intent(in) :: i, increments
+      type(contact_fields_type), intent(inout) :: fields
+      integer :: same
+
+      if (mod(i*coarser%increments, increments) /= 0) return
+      same = i*coarser%increments/increments
+      associate (status => coarser%before(same)%status)
+         call path%set_status(coarser%fronts .or. in_contact(path%state%status) .and. in_contact(status), status)
+      end associate
+      call fields%copy_from(coarser%after(same))
+   end subroutine guess_from
+
+   !> Start from the statuses and fields at part `i` of an equal interval before, if there was one.
+   subroutine guess_as_before(path, interval, i, parts, fields, guessed)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: interval
+      integer, intent(in) :: i, parts
+      type(contact_fields_type), intent(inout) :: fields
+      logical, intent(out), optional :: guessed
+      type(sample_type) :: sample
+      logical :: found
+
+      call path%recent%find(interval%load, size(path%state%status), i, parts, sample, found)
+      if (found) then
+         call path%set_status(spread(.true., 1, size(sample%status)), sample%status)
+         call fields%copy_from(sample%fields)
+      end if
+      if (present(guessed)) guessed = found
+   end subroutine guess_as_before
+
+   !> Number of nodes that change their status one by one (at a reversal of the load all slipping nodes stick at once).
+   pure integer function count_changes(before, after)
+      integer, intent(in) :: before(:), after(:)
+
+      count_changes = count(before /= after .and. .not. (slips(before) .and. after == node_stick))
+   end function count_changes
+
+   !> Double the number of samples; at first take the `start`, with its rates, and the ends of the increments. The dissipation node
+   !> by node is summed anew. `found`: false if a state or its rates are not found. `path` is unchanged.
+   subroutine add_samples(path, interval, start, chain, found)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: interval
+      type(sample_type), intent(in) :: start
+      type(chain_type), intent(inout) :: chain
+      logical, intent(out) :: found
+      type(sample_type), allocatable :: coarse(:)
+      type(contact_state_type) :: present_state
+      integer :: i, solves
+
+      solves = path%system%solves
+      present_state = path%state
+      if (allocated(chain%samples)) then
+         call move_alloc(chain%samples, coarse)
+         allocate (chain%samples(0:2*ubound(coarse, 1)))
+         chain%samples(0::2) = coarse
+         do i = 1, ubound(chain%samples, 1), 2
+            call find_sample(path, interval, start, chain, i, found)
+            path%state = present_state
+            if (.not. found) exit
+         end do
+      else
+         allocate (chain%samples(0:chain%increments))
+         chain%samples(0) = start
+         do i = 1, chain%increments
+            associate (sample => chain%samples(i))
+               sample%status = chain%before(i)%status
+               sample%fields = chain%after(i)
+               call find_rates_after(path, interval, chain, i, .true., sample%rates, found)
+            end associate
+            if (.not. found) exit
+         end do
+      end if
+      chain%solves = chain%solves + path%system%solves - solves
+      if (found) call sum_samples(path, chain)
+   end subroutine add_samples
+
+   !> Find sample `i`, midway between two known ones. `path` is left at the start of the increment.
+   subroutine find_sample(path, interval, start, chain, i, found)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: interval
+      type(sample_type), intent(in) :: start
+      type(chain_type), intent(inout) :: chain
+      integer, intent(in) :: i
+      logical, intent(out) :: found
+      real(wp) :: fraction
+      logical :: exceeded, guessed
+      integer :: increment
+
+      fraction = real(i, wp)/ubound(chain%samples, 1)
+      increment = 1 + (i*chain%increments)/ubound(chain%samples, 1)
+      if (increment > 1) then
+         path%state = chain%before(increment - 1)
+         path%state%fields = chain%after(increment - 1)
+      end if
+      associate (left => chain%samples(i - 1), right => chain%samples(i + 1), sample => chain%samples(i))
+         sample%fields = left%fields%plus(1.0_wp, right%fields)
+         sample%fields = sample%fields%plus(-0.5_wp, sample%fields)
+         call guess_as_before(path, interval, i, ubound(chain%samples, 1), sample%fields, guessed)
+         if (.not. guessed) &
+            call path%set_status(spread(.true., 1, size(left%status)), statuses_between(left%status, right%status))
+         call find_statuses_on_mesh(path, interval, fraction, sample%fields, found, exceeded, &
+                                    holding_before(chain, start, increment))
+         if (.not. found) return
+         sample%status = path%state%status
+         path%state%fields = sample%fields
+         call find_rates(path, interval, fraction, sample%fields, sample%rates, found)
+      end associate
+   end subroutine find_sample
+
+   !> A guess of the statuses between two states: where an edge has moved, it is midway.
+   pure function statuses_between(left, right) result(status)
+      integer, intent(in) :: left(:), right(:)
+      integer :: status(size(left)), first, last, middle
+      logical :: recedes
+
+      status = left
+      first = 1
+      do while (first <= size(left))
+         last = first
+         do while (last < size(left))
+            if (left(last + 1) /= left(first) .or. right(last + 1) /= right(first)) exit
+            last = last + 1
+         end do
+         if (left(first) /= right(first)) then
+            middle = (first + last)/2
+            ! The status of the left one remains next to a zone that had it before and has it later.
+            recedes = .false.
+            if (first > 1) recedes = right(first - 1) == left(first)
+            if (last < size(left)) recedes = recedes .or. left(last + 1) == right(first)
+            if (recedes) then
+               status(middle + 1:last) = right(first)
+            else
+               status(first:middle) = right(first)
+            end if
+         end if
+         first = last + 1
+      end do
+   end function statuses_between
+
+   !> The dissipation of the increments node by node, from sample to sample.
+   subroutine sum_samples(path, chain)
+      class(contact_path_type), intent(in) :: path
+      type(chain_type), intent(inout) :: chain
+      type(contact_state_type) :: before
+      integer :: i, increment, each
+
+      each = ubound(chain%samples, 1)/chain%increments
+      if (each > 1) chain%coarse_node_wise = chain%node_wise
+      chain%friction_work = 0.0_wp
+      chain%node_wise = 0.0_wp
+      chain%node_wise_error = 0.0_wp
+      do i = 1, ubound(chain%samples, 1)
+         increment = 1 + (i - 1)/each
+         before = chain%before(increment)
+         if (each > 1) then
+            before%fields = chain%samples(i - 1)%fields
+            before%status = chain%samples(i)%status
+            where (before%status /= node_stick) before%stuck_slip = before%fields%slip()
+         end if
+         call add_node_wise_work(path, chain, increment, before, chain%samples(i)%fields)
+      end do
+   end subroutine sum_samples
+
+   !> The rates at the end of increment `i` of a chain, per unit of the interval. `backward`: as the end is reached, where nodes are
+   !> stuck that have just arrived at their limit (in a repeated cycle many do so at the very end). `path` is unchanged.
+   subroutine find_rates_after(path, interval, chain, i, backward, rates, found)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: interval
+      type(chain_type), intent(in) :: chain
+      integer, intent(in) :: i
+      logical, intent(in) :: backward
+      type(contact_fields_type), intent(out) :: rates
+      logical, intent(out) :: found
+      real(wp), parameter :: just = 1.0e-5_wp
+      type(contact_state_type) :: present_state
+      real(wp) :: slipped(size(path%state%status))
+
+      present_state = path%state
+      path%state = chain%before(i)
+      slipped = abs(chain%after(i)%slip() - path%state%stuck_slip)
+      call path%set_status(backward .and. slips(path%state%status) .and. slipped <= just*maxval(slipped), &
+                           spread(node_stick, 1, size(slipped)))
+      path%state%fields = chain%after(i)
+      call find_rates(path, interval, reached(chain, i), chain%after(i), rates, found)
+      path%state = present_state
+   end subroutine find_rates_after
+
+   !> Errors of the tractions where nodes have closed since the statuses `before`, or where slip zones are narrow.
+   subroutine find_start_error(path, before, interval, chain)
+      class(contact_path_type), intent(in) :: path
+      integer, intent(in) :: before(:)
+      type(segment_type), intent(in) :: interval
+      type(chain_type), intent(inout) :: chain
+      logical :: grown
+
+      grown = any(in_contact(path%state%status) .and. .not. in_contact(before))
+      if (.not. (grown .or. chain%fronts .and. chain%changes > 0)) return
+      chain%start_error = error_of_edge(path%state%status, chain%begins, &
+                                        grown .and. abs(interval%load(motion_approach)%rate) > 0.0_wp, &
+                                        path%model%scene%friction%static%largest())*chain%traction
+   end subroutine find_start_error
+
+   !> Error of the tractions of a contact that has begun (`begins`) or grown in the interval, relative to the largest, by the
+   !> `status` of its nodes: see error_at_start and error_of_growth. An error at the edge of a contact without slip zones is
+   !> compared with the friction limit, since it changes the slip zones of later steps. `presses`: whether the normal load changes;
+   !> `friction`: the coefficient.
+   pure real(wp) function error_of_edge(status, begins, presses, friction) result(error)
+      integer, intent(in) :: status(:)
+      logical, intent(in) :: begins, presses
+      real(wp), intent(in) :: friction
+      integer :: i, slipping
+      logical :: inside
+
+      error = merge(error_at_start, merge(error_of_growth, 0.0_wp, presses), begins)
+      slipping = 0
+      inside = .false.
+      do i = 1, size(status)
+         if (slips(status(i))) then
+            slipping = slipping + 1
+            cycle
+         end if
+         if ((status(i) == node_open .and. inside) .or. (status(i) == node_stick .and. .not. inside)) then
+            if (slipping < resolved .and. .not. begins) error = error_of_growth
+            if (slipping == 0 .and. begins) error = max(error, error_at_start/min(friction, 1.0_wp))
+            if (slipping > 0 .and. slipping < resolved .and. begins) error = max(error, error_unresolved)
+         end if
+         inside = status(i) == node_stick
+         slipping = 0
+      end do
+      error = error/max(count(in_contact(status)), 1)
+   end function error_of_edge
+
+   !> A first guess of the slipping nodes at a fraction of the interval: they slip in the direction of the tangential load. Under
+   !> constant pressures and tangential force control their number is that of Mindlin's contact of cylinders: the edge of the stick
+   !> zone is where the pressure is sqrt(Q/(mu P)) of the largest; after a reversal, with half the change in place of Q.
+   subroutine guess_slip(path, interval, fraction)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: interval
+      real(wp), intent(in) :: fraction
+      integer, dimension(size(path%state%status)) :: status
+      real(wp) :: force, sliding_limit
+      logical :: reverses
+
+      if (.not. abs(interval%load(motion_shift)%rate) > 0.0_wp) return
+      status = merge(node_slip_left, node_slip_right, interval%load(motion_shift)%rate > 0.0_wp)
+      reverses = any(slips(path%state%status) .and. path%state%status /= status)
+      associate (fields => path%state%fields, load => interval%load(motion_shift))
+         sliding_limit = path%model%force(path%model%static_friction*fields%pressure)
+         if (load%control /= control_force .or. abs(interval%load(motion_approach)%rate) > 0.0_wp .or. &
+             .not. sliding_limit > 0.0_wp .or. path%model%compliance%has_block(block_wt)) then
+            call path%set_status(slips(path%state%status), status)
+            return
+         end if
+         force = load%value + fraction*load%rate
+         if (reverses) force = 0.5_wp*(force - fields%force(motion_shift))
+         force = max(sign(1.0_wp, load%rate)*force, 0.0_wp)
+         where (fields%pressure > sqrt(force/sliding_limit)*maxval(fields%pressure)) status = node_stick
+      end associate
+      call path%set_status(in_contact(path%state%status), status)
+   end subroutine guess_slip
+
+end module mfv_chain
