@@ -45,7 +45,7 @@ module mfv_solver_costs
    !> Fewest nodes of the mesh for which stepping='auto' takes large increments if an error is allowed. They take 40 to 200 solves
    !> to press with friction and coupling and 20 to 60 for a half-cycle, on any mesh, events about one for each node that
    !> changes its status (docs/performance.md). Without coupling they take 4 solves.
-   integer, parameter :: least_leap = 30, least_coupled_leap = 640
+   integer, parameter :: least_leap = 30, least_coupled_leap = 384
 
 contains
 

@@ -4,13 +4,13 @@
 !>
 !>     T^-1 = [ L(a) L(a)^T - L(b) L(b)^T ]/E,    b = (0, a(m), ..., a(2)),
 !>
-!> L(a): the lower triangular Toeplitz matrix with the first column a. A product with it takes six real transforms of twice the
+!> L(a): the lower triangular Toeplitz matrix with the first column a. A product with it takes real transforms of twice the
 !> order. Levinson's recursion changes the order of the predictor by one in O(m), up and down (Golub and Van Loan, Matrix
 !> Computations, 4th edition, section 4.7), which is cheap for a contact that changes by single nodes. For larger changes the
 !> predictor is computed in O(m log m) by conjugate gradients with a circulant preconditioner (Chan and Ng, SIAM Review 38, 1996).
 !> For the logarithmic kernel of mfv_krylov_preconditioner this takes 13 to 15 iterations from 500 to 65,536 nodes.
 module mfv_toeplitz_inverse
-   use mfv_fourier, only: back_transform, fast_length, real_transform
+   use mfv_fourier, only: back_transform, backward, complex_transform, fast_length, forward, real_transform
    use mfv_kinds, only: wp
    use mfv_lapack, only: ddot
    implicit none
@@ -26,8 +26,8 @@ module mfv_toeplitz_inverse
       integer :: length = 0
       complex(wp), allocatable :: forward(:), backward(:)
       !> Work space, shapes (length) and (length/2 + 1).
-      real(wp), allocatable :: values(:), others(:)
-      complex(wp), allocatable :: spectrum(:), product(:)
+      real(wp), allocatable :: values(:)
+      complex(wp), allocatable :: pairs(:), others(:), spectrum(:)
    contains
       procedure :: set_order
       procedure :: apply
@@ -88,7 +88,7 @@ contains
       call move_alloc(other%values, self%values)
       call move_alloc(other%others, self%others)
       call move_alloc(other%spectrum, self%spectrum)
-      call move_alloc(other%product, self%product)
+      call move_alloc(other%pairs, self%pairs)
       other%order = 0
       other%length = 0
    end subroutine move_from
@@ -269,11 +269,13 @@ contains
       self%order = m - 1
    end subroutine step_down
 
-   !> Multiply `vector`, shape (order), by the inverse.
+   !> Multiply `vector`, shape (order), by the inverse. The products with L(a)^T and L(b)^T are the real and the imaginary part of one
+   !> complex transform.
    subroutine apply(self, vector)
       class(toeplitz_inverse_type), intent(inout) :: self
       real(wp), intent(inout) :: vector(:)
-      integer :: m
+      complex(wp) :: by_a, by_b, mirrored
+      integer :: k, l, m
 
       m = self%order
       if (m == 0) return
@@ -281,16 +283,24 @@ contains
       self%values(:m) = vector(:m)
       self%values(m + 1:) = 0.0_wp
       call real_transform(self%values, self%spectrum)
-      self%product = conjg(self%forward)*self%spectrum
-      call back_transform(self%product, self%values)
-      self%product = conjg(self%backward)*self%spectrum
-      call back_transform(self%product, self%others)
-      self%values(m + 1:) = 0.0_wp
+      do k = 1, self%length/2 + 1
+         by_a = conjg(self%forward(k))*self%spectrum(k)
+         by_b = conjg(self%backward(k))*self%spectrum(k)
+         self%pairs(k) = cmplx(real(by_a) - aimag(by_b), aimag(by_a) + real(by_b), wp)
+         if (k > 1) self%pairs(self%length + 2 - k) = cmplx(real(by_a) + aimag(by_b), real(by_b) - aimag(by_a), wp)
+      end do
+      call complex_transform(backward, self%pairs, self%others)
       self%others(m + 1:) = 0.0_wp
-      call real_transform(self%values, self%spectrum)
-      call real_transform(self%others, self%product)
-      self%product = self%forward*self%spectrum - self%backward*self%product
-      call back_transform(self%product, self%values)
+      call complex_transform(forward, self%others, self%pairs)
+      do k = 1, self%length/2 + 1
+         l = merge(1, self%length + 2 - k, k == 1)
+         mirrored = conjg(self%pairs(l))
+         by_a = 0.5_wp*(self%pairs(k) + mirrored)
+         by_b = self%pairs(k) - mirrored
+         by_b = 0.5_wp*cmplx(aimag(by_b), -real(by_b), wp)
+         self%spectrum(k) = self%forward(k)*by_a - self%backward(k)*by_b
+      end do
+      call back_transform(self%spectrum, self%values)
       vector(:m) = self%values(:m)/(self%error*real(self%length, wp)**2)
    end subroutine apply
 
@@ -302,11 +312,11 @@ contains
       m = self%order
       length = fast_length(2*m)
       if (allocated(self%values)) then
-         if (size(self%values) /= length) deallocate (self%values, self%others, self%spectrum, self%product, self%forward, &
+         if (size(self%values) /= length) deallocate (self%values, self%pairs, self%others, self%spectrum, self%forward, &
                                                       self%backward)
       end if
       if (.not. allocated(self%values)) &
-         allocate (self%values(length), self%others(length), self%spectrum(length/2 + 1), self%product(length/2 + 1), &
+         allocate (self%values(length), self%pairs(length), self%others(length), self%spectrum(length/2 + 1), &
                    self%forward(length/2 + 1), self%backward(length/2 + 1))
       self%length = length
       self%values = 0.0_wp

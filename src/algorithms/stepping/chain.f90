@@ -73,6 +73,7 @@ contains
       type(contact_state_type) :: present_state
       logical, allocatable :: held(:)
       integer, allocatable :: status(:)
+      logical :: known
       integer :: i
 
       present_state = path%state
@@ -87,8 +88,10 @@ contains
          if (chain%fronts) held = holding_before(chain, start, i)
          if (i == 1) call guess_slip(path, interval, reached(chain, i))
          chain%after(i) = path%state%fields
-         if (chain%fronts .and. .not. chain%begins) call guess_as_before(path, interval, i, increments, chain%after(i))
-         if (present(coarser)) call guess_from(path, coarser, i, increments, chain%after(i))
+         known = .false.
+         if (present(coarser)) call guess_from(path, coarser, start, chain, i, known)
+         if (chain%fronts .and. .not. (chain%begins .or. known)) &
+            call guess_as_before(path, interval, i, increments, chain%after(i), known)
          call find_statuses_on_mesh(path, interval, reached(chain, i), chain%after(i), chain%found, chain%exceeded, held)
          if (.not. chain%found) exit
          chain%changes = chain%changes + count_changes(status, path%state%status)
@@ -142,39 +145,54 @@ contains
       chain%node_wise_error = chain%node_wise_error + error
    end subroutine add_node_wise_work
 
-   !> If increment `i` ends where one of a coarser chain does, start from the statuses and `fields` there: from the statuses of all
-   !> nodes if the slip of touching nodes follows from the fronts.
-   subroutine guess_from(path, coarser, i, increments, fields)
+   !> A first guess of the end of increment `i` from a coarser chain: the same state, or midway to the next one. If the slip of
+   !> touching nodes does not follow from the fronts, only statuses of nodes in contact are guessed, where there is the same state
+   !> (`known`).
+   subroutine guess_from(path, coarser, start, chain, i, known)
       class(contact_path_type), intent(inout) :: path
       type(chain_type), intent(in) :: coarser
-      integer, intent(in) :: i, increments
-      type(contact_fields_type), intent(inout) :: fields
-      integer :: same
+      type(sample_type), intent(in) :: start
+      type(chain_type), intent(inout) :: chain
+      integer, intent(in) :: i
+      logical, intent(out) :: known
+      integer, dimension(size(path%state%status)) :: before, after
+      integer :: next
 
-      if (mod(i*coarser%increments, increments) /= 0) return
-      same = i*coarser%increments/increments
-      associate (status => coarser%before(same)%status)
-         call path%set_status(coarser%fronts .or. in_contact(path%state%status) .and. in_contact(status), status)
-      end associate
-      call fields%copy_from(coarser%after(same))
+      next = (i*coarser%increments + chain%increments - 1)/chain%increments
+      after = coarser%before(next)%status
+      known = mod(i*coarser%increments, chain%increments) == 0
+      if (known) then
+         call path%set_status(coarser%fronts .or. in_contact(path%state%status) .and. in_contact(after), after)
+         call chain%after(i)%copy_from(coarser%after(next))
+      else if (chain%fronts .and. .not. chain%begins .and. chain%increments == 2*coarser%increments) then
+         before = start%status
+         if (i > 1) before = chain%before(i - 1)%status
+         call path%set_status(spread(.true., 1, size(after)), statuses_between(before, after))
+         chain%after(i) = mean(path%state%fields, coarser%after(next))
+      end if
    end subroutine guess_from
 
-   !> Start from the statuses and fields at part `i` of an equal interval before, if there was one.
-   subroutine guess_as_before(path, interval, i, parts, fields, guessed)
+   !> The mean of two fields.
+   pure type(contact_fields_type) function mean(a, b)
+      type(contact_fields_type), intent(in) :: a, b
+
+      mean = a%plus(1.0_wp, b)
+      mean = mean%plus(-0.5_wp, mean)
+   end function mean
+
+   !> A first guess from the end of part `i` of an equal interval before, if there was one (`known`).
+   subroutine guess_as_before(path, interval, i, parts, fields, known)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
       integer, intent(in) :: i, parts
       type(contact_fields_type), intent(inout) :: fields
-      logical, intent(out), optional :: guessed
+      logical, intent(out) :: known
       type(sample_type) :: sample
-      logical :: found
 
-      call path%recent%find(interval%load, size(path%state%status), i, parts, sample, found)
-      if (found) then
-         call path%set_status(spread(.true., 1, size(sample%status)), sample%status)
-         call fields%copy_from(sample%fields)
-      end if
-      if (present(guessed)) guessed = found
+      call path%recent%find(interval%load, size(path%state%status), i, parts, sample, known)
+      if (.not. known) return
+      call path%set_status(spread(.true., 1, size(sample%status)), sample%status)
+      call fields%copy_from(sample%fields)
    end subroutine guess_as_before
 
    !> Number of nodes that change their status one by one (at a reversal of the load all slipping nodes stick at once).
@@ -232,7 +250,7 @@ contains
       integer, intent(in) :: i
       logical, intent(out) :: found
       real(wp) :: fraction
-      logical :: exceeded, guessed
+      logical :: exceeded, known
       integer :: increment
 
       fraction = real(i, wp)/ubound(chain%samples, 1)
@@ -242,10 +260,9 @@ contains
          path%state%fields = chain%after(increment - 1)
       end if
       associate (left => chain%samples(i - 1), right => chain%samples(i + 1), sample => chain%samples(i))
-         sample%fields = left%fields%plus(1.0_wp, right%fields)
-         sample%fields = sample%fields%plus(-0.5_wp, sample%fields)
-         call guess_as_before(path, interval, i, ubound(chain%samples, 1), sample%fields, guessed)
-         if (.not. guessed) &
+         sample%fields = mean(left%fields, right%fields)
+         call guess_as_before(path, interval, i, ubound(chain%samples, 1), sample%fields, known)
+         if (.not. known) &
             call path%set_status(spread(.true., 1, size(left%status)), statuses_between(left%status, right%status))
          call find_statuses_on_mesh(path, interval, fraction, sample%fields, found, exceeded, &
                                     holding_before(chain, start, increment))

@@ -158,8 +158,6 @@ contains
          chain = finer
          if (.not. chain%found) return
          call choose(path, chain, accepted, increments)
-         write(0,'(a,3i6,L2,L2,8es10.2)') 'CH',chain%increments,chain%solves,chain%changes, & !DBG
-         chain%begins,chain%fronts,relative_traction_error(path,chain),chain%work_error/chain%work,chain%work !DBG
          if (chain%fronts .and. .not. (accepted .or. chain%begins)) &
             call refine_samples(path, interval, start, chain, accepted, increments)
          if (accepted .and. .not. chain%fronts) accepted = .not. slips_back(path, interval, chain)
@@ -187,8 +185,6 @@ contains
          call weigh_samples(path, chain)
          accepted = relative_work_error(path, chain) <= 1.0_wp .and. &
                     (ubound(chain%samples, 1) >= least_samples .or. .not. abs(interval%load(motion_approach)%rate) > 0.0_wp)
-         write(0,'(a,2i5,9es12.4)') 'SA',ubound(chain%samples,1),chain%solves,chain%work,chain%work_error/chain%work, & !DBG
-         chain%node_wise,chain%node_wise_error/chain%work !DBG
          if (accepted) return
          if (2*ubound(chain%samples, 1) > most_increments .or. 2*chain%solves > solves_per_change*chain%changes) exit
       end do
@@ -210,7 +206,6 @@ contains
          chain%work = chain%node_wise
          chain%work_error = chain%node_wise_error
       end if
-      write(0,'(a,9es12.4)') 'BB',by_slopes,by_nodes,chain%node_wise,chain%coarse_node_wise,error !DBG
       if (chain%node_wise > 0.0_wp) chain%friction_work = chain%friction_work*(chain%work/chain%node_wise)
    end subroutine weigh_samples
 
@@ -306,11 +301,12 @@ contains
    end function slips_back
 
    !> The work that the error of the dissipation of a chain is compared with, force: the dissipation. If contact begins, that is
-   !> often next to nothing: then at least a fraction of (mu P)^2/m, m the contact modulus.
+   !> often next to nothing: then at least that of a cycle of shear to about 0.8 mu P, as a fraction of (mu P)^2/m, m the contact
+   !> modulus.
    pure real(wp) function reference_work(path, chain) result(work)
       class(contact_path_type), intent(in) :: path
       type(chain_type), intent(in) :: chain
-      real(wp), parameter :: fraction = 1.0e-4_wp
+      real(wp), parameter :: fraction = 0.06_wp
 
       work = chain%work
       if (chain%begins) work = max(work, fraction/path%model%compliance%modulus &
