@@ -274,31 +274,33 @@ contains
    end subroutine find_sample
 
    !> A guess of the statuses between two states: where an edge has moved, it is midway.
-   pure function statuses_between(left, right) result(status)
-      integer, intent(in) :: left(:), right(:)
-      integer :: status(size(left)), first, last, middle
-      logical :: recedes
+   pure function statuses_between(before, after) result(status)
+      integer, intent(in) :: before(:), after(:)
+      integer :: status(size(before)), first, last, half, n
+      logical :: from_left, from_right
 
-      status = left
+      n = size(before)
+      status = before
       first = 1
-      do while (first <= size(left))
+      do while (first <= n)
          last = first
-         do while (last < size(left))
-            if (left(last + 1) /= left(first) .or. right(last + 1) /= right(first)) exit
+         do while (last < n)
+            if (before(last + 1) /= before(first) .or. after(last + 1) /= after(first)) exit
             last = last + 1
          end do
-         if (left(first) /= right(first)) then
-            middle = (first + last)/2
-            ! The status of the left one remains next to a zone that had it before and has it later.
-            recedes = .false.
-            if (first > 1) recedes = right(first - 1) == left(first)
-            if (last < size(left)) recedes = recedes .or. left(last + 1) == right(first)
-            if (recedes) then
-               status(middle + 1:last) = right(first)
-            else
-               status(first:middle) = right(first)
-            end if
+         half = (last - first + 1)/2
+         from_left = .false.
+         from_right = .false.
+         if (first > 1) then
+            from_left = before(first - 1) == after(first)
+            from_right = after(first - 1) == before(first)
          end if
+         if (last < n) then
+            from_left = from_left .or. after(last + 1) == before(first)
+            from_right = from_right .or. before(last + 1) == after(first)
+         end if
+         if (from_left .and. .not. from_right) status(first:first + half - 1) = after(first)
+         if (from_right .and. .not. from_left) status(last - half + 1:last) = after(first)
          first = last + 1
       end do
    end function statuses_between
