@@ -78,7 +78,8 @@ contains
       allocate (self%contact, self%held)
    end subroutine prepare
 
-   !> Whether the direct blocks of a compliance have the entries of `kernel` by distance: that of a half-plane. Seen from its rows at the ends and in the middle.
+   !> Whether the direct blocks of a compliance have the entries of `kernel` by distance: that of a half-plane. Seen from rows at
+   !> the ends and in the middle.
    pure logical function has_kernel(compliance, kernel)
       class(compliance_type), intent(in) :: compliance
       real(wp), intent(in) :: kernel(:)

@@ -441,8 +441,8 @@ contains
       rows = right%rows - rows
    end subroutine find_residual
 
-   !> Product of the preconditioned matrix with a change of the unknowns. If the inverses are exact, it is the change itself plus what
-   !> the preconditioner leaves out: normal displacements by the shear, and those by resultants that depend on the datum.
+   !> Product of the preconditioned matrix with a change of the unknowns. If the inverses are exact, it is the change itself plus
+   !> what the preconditioner leaves out: normal displacements by the shear, and those by resultants that depend on the datum.
    subroutine multiply_preconditioned(self, model, unknowns, rows)
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model

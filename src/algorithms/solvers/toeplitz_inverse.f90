@@ -4,8 +4,8 @@
 !>
 !>     T^-1 = [ L(a) L(a)^T - L(b) L(b)^T ]/E,    b = (0, a(m), ..., a(2)),
 !>
-!> L(a): the lower triangular Toeplitz matrix with the first column a. A product with it takes real transforms of twice the
-!> order. Levinson's recursion changes the order of the predictor by one in O(m), up and down (Golub and Van Loan, Matrix
+!> L(a): the lower triangular Toeplitz matrix with the first column a. A product with it takes transforms of twice the order.
+!> Levinson's recursion changes the order of the predictor by one in O(m), up and down (Golub and Van Loan, Matrix
 !> Computations, 4th edition, section 4.7), which is cheap for a contact that changes by single nodes. For larger changes the
 !> predictor is computed in O(m log m) by conjugate gradients with a circulant preconditioner (Chan and Ng, SIAM Review 38, 1996).
 !> For the logarithmic kernel of mfv_krylov_preconditioner this takes 13 to 15 iterations from 500 to 65,536 nodes.
@@ -269,8 +269,8 @@ contains
       self%order = m - 1
    end subroutine step_down
 
-   !> Multiply `vector`, shape (order), by the inverse. The products with L(a)^T and L(b)^T are the real and the imaginary part of one
-   !> complex transform.
+   !> Multiply `vector`, shape (order), by the inverse. The products with L(a)^T and L(b)^T are the real and the imaginary part of
+   !> one complex transform.
    subroutine apply(self, vector)
       class(toeplitz_inverse_type), intent(inout) :: self
       real(wp), intent(inout) :: vector(:)

@@ -37,6 +37,9 @@ module mfv_chain_dissipation
       type(contact_fields_type) :: fields, rates
    end type sample_type
 
+   !> Values and slopes at three states.
+   integer, parameter :: values_of_three = 6
+
 contains
 
    !> The friction dissipation from the fields `start` through the fields `after`, evenly spaced on a smooth path, shape
@@ -100,7 +103,7 @@ contains
       type(contact_fields_type), intent(in) :: a, b, c
 
       work = -model%force(along(a%shear, b%shear, c%shear, a%slip(), b%slip(), c%slip()) + &
-                            along(a%pressure, b%pressure, c%pressure, model%gap(a), model%gap(b), model%gap(c)))
+                          along(a%pressure, b%pressure, c%pressure, model%gap(a), model%gap(b), model%gap(c)))
    end function curved_dissipation
 
    !> int f dg along parabolas through three evenly spaced values of f and g.
@@ -122,9 +125,9 @@ contains
                                  (a%pressure + b%pressure)*(model%gap(b) - model%gap(a)))
    end function straight_dissipation
 
-   !> The friction dissipation from evenly spaced states with their rates, of even number without the first; force. `error`: its
-   !> estimated error, force: the difference to polynomials of the third degree, or that due to edges of zones which move node by
-   !> node, by the number of slipping nodes.
+   !> The friction dissipation from evenly spaced states with their rates, an even number without the first; force. `error`: that
+   !> due to edges of zones which move node by node, force: rates jump with each of the `changes` of status (as found on random
+   !> scenes).
    !> `motion_work`: the work of the forces of all motions, force.
    subroutine dissipation_by_slopes(model, samples, changes, work, error, motion_work)
       class(contact_model_type), intent(in) :: model
@@ -132,82 +135,73 @@ contains
       integer, intent(in) :: changes
       real(wp), intent(out) :: work, error, motion_work(motion_count)
       real(wp), parameter :: noise = 2.0_wp
-      real(wp) :: of_two(4, 4), of_three(6, 6), half, straight
+      real(wp) :: weight(values_of_three, values_of_three), straight
       integer :: i, n
 
       n = ubound(samples, 1)
-      half = 0.5_wp/n
-      call integrate_polynomials([-1.0_wp, 1.0_wp], of_two)
-      call integrate_polynomials([-1.0_wp, 0.0_wp, 1.0_wp], of_three)
+      call integrate_polynomials(weight)
       work = 0.0_wp
-      straight = 0.0_wp
       motion_work = 0.0_wp
       do i = 0, n - 2, 2
-         call add_interval(samples(i:i + 2), of_three, 2.0_wp*half, work, motion_work)
+         call add_pair(model, samples(i:i + 2), 1.0_wp/n, weight, work, motion_work)
       end do
-      do i = 0, n - 1
-         straight = straight + straight_dissipation(model, samples(i)%fields, samples(i + 1)%fields)
+      straight = 0.0_wp
+      do i = 1, n
+         straight = straight + straight_dissipation(model, samples(i - 1)%fields, samples(i)%fields)
       end do
       error = noise*abs(work - straight)/max(changes, 1)
-
-   contains
-
-      !> Add -int (tau ds + p dg) and int F dy over an interval of the length 2*`half`. `weight`: int f dg for unit values and slopes.
-      subroutine add_interval(samples, weight, half, work, motion_work)
-         type(sample_type), intent(in) :: samples(:)
-         real(wp), intent(in) :: weight(:, :), half
-         real(wp), intent(inout) :: work
-         real(wp), intent(inout), optional :: motion_work(:)
-         real(wp), allocatable, dimension(:, :) :: shear, slip, pressure, gap, force, motion
-         real(wp) :: stuck(size(model%width))
-         integer :: i, k
-
-         k = size(samples)
-         allocate (shear(size(model%width), 2*k), slip(size(model%width), 2*k), pressure(size(model%width), 2*k), &
-                   gap(size(model%width), 2*k), force(motion_count, 2*k), motion(motion_count, 2*k))
-         do i = 1, k
-            associate (fields => samples(i)%fields, rates => samples(i)%rates)
-               shear(:, i) = fields%shear
-               shear(:, k + i) = half*rates%shear
-               slip(:, i) = fields%slip()
-               slip(:, k + i) = half*rates%slip()
-               pressure(:, i) = fields%pressure
-               pressure(:, k + i) = half*rates%pressure
-               gap(:, i) = model%gap(fields)
-               gap(:, k + i) = half*(model%gap(fields%plus(1.0_wp, rates)) - gap(:, i))
-               force(:, i) = fields%force
-               force(:, k + i) = half*rates%force
-               motion(:, i) = fields%motion
-               motion(:, k + i) = half*rates%motion
-            end associate
-         end do
-         stuck = sum(shear*matmul(slip, transpose(weight)) + pressure*matmul(gap, transpose(weight)), dim=2)
-         work = work - model%force(stuck)
-         if (present(motion_work)) motion_work = motion_work + sum(force*matmul(motion, transpose(weight)), dim=2)
-      end subroutine add_interval
    end subroutine dissipation_by_slopes
 
-   !> int f dg from -1 to 1 for the polynomials f (rows) and g (columns) that have the value or the slope 1 at one of the `places`,
-   !> and otherwise values and slopes 0 there; shape (2*places, 2*places), values first.
-   subroutine integrate_polynomials(places, weight)
-      real(wp), intent(in) :: places(:)
-      real(wp), intent(out) :: weight(:, :)
-      real(wp), dimension(size(weight, 1), size(weight, 1)) :: conditions, coefficients, powers
-      integer :: i, j, k, info, pivots(size(weight, 1))
+   !> Add -int (tau ds + p dg) and int F dy through three states, `step` apart. `weight`: from integrate_polynomials.
+   subroutine add_pair(model, samples, step, weight, work, motion_work)
+      class(contact_model_type), intent(in) :: model
+      type(sample_type), intent(in) :: samples(3)
+      real(wp), intent(in) :: step, weight(values_of_three, values_of_three)
+      real(wp), intent(inout) :: work, motion_work(motion_count)
+      real(wp), dimension(size(model%width), values_of_three) :: shear, slip, pressure, gap
+      real(wp), dimension(motion_count, values_of_three) :: force, motion
+      integer :: i
 
-      k = size(places)
+      do i = 1, 3
+         associate (fields => samples(i)%fields, rates => samples(i)%rates)
+            shear(:, i) = fields%shear
+            shear(:, 3 + i) = step*rates%shear
+            slip(:, i) = fields%slip()
+            slip(:, 3 + i) = step*rates%slip()
+            pressure(:, i) = fields%pressure
+            pressure(:, 3 + i) = step*rates%pressure
+            gap(:, i) = model%gap(fields)
+            gap(:, 3 + i) = step*(model%gap(fields%plus(1.0_wp, rates)) - gap(:, i))
+            force(:, i) = fields%force
+            force(:, 3 + i) = step*rates%force
+            motion(:, i) = fields%motion
+            motion(:, 3 + i) = step*rates%motion
+         end associate
+      end do
+      work = work - model%force(sum(shear*matmul(slip, transpose(weight)) + pressure*matmul(gap, transpose(weight)), dim=2))
+      motion_work = motion_work + sum(force*matmul(motion, transpose(weight)), dim=2)
+   end subroutine add_pair
+
+   !> int f dg from -1 to 1 for the polynomials f (rows) and g (columns) of the fifth degree that have the value 1 (first three) or
+   !> the slope 1 at -1, 0 or 1, and otherwise values and slopes 0 there.
+   subroutine integrate_polynomials(weight)
+      real(wp), intent(out) :: weight(values_of_three, values_of_three)
+      real(wp), parameter :: places(3) = [-1.0_wp, 0.0_wp, 1.0_wp]
+      real(wp), dimension(values_of_three, values_of_three) :: conditions, coefficients, powers
+      integer :: i, j, info, pivots(values_of_three)
+
       coefficients = 0.0_wp
       powers = 0.0_wp
-      do j = 0, 2*k - 1
-         conditions(:k, j + 1) = places**j
-         conditions(k + 1:, j + 1) = 0.0_wp
-         if (j > 0) conditions(k + 1:, j + 1) = j*places**(j - 1)
+      conditions = 0.0_wp
+      do j = 0, values_of_three - 1
+         conditions(:3, j + 1) = places**j
+         if (j > 0) conditions(4:, j + 1) = j*places**(j - 1)
          coefficients(j + 1, j + 1) = 1.0_wp
-         do i = 0, 2*k - 1
+         do i = 0, values_of_three - 1
             if (modulo(i + j, 2) == 1) powers(i + 1, j + 1) = 2.0_wp*j/(i + j)
          end do
       end do
-      call dgesv(2*k, 2*k, conditions, 2*k, pivots, coefficients, 2*k, info)
+      call dgesv(values_of_three, values_of_three, conditions, values_of_three, pivots, coefficients, values_of_three, info)
       weight = matmul(transpose(coefficients), matmul(powers, coefficients))
    end subroutine integrate_polynomials
 

@@ -191,7 +191,9 @@ contains
       increments = 0
    end subroutine refine_samples
 
-   !> The dissipation of a chain by its samples, if that is better.
+   !> The dissipation of a chain by its samples: by slopes, or node by node if that is exact. Its error is taken to be half the
+   !> difference to the sum node by node, extrapolated at second order, and at least a sixth of that to the sum itself; twice as much
+   !> with two samples.
    subroutine weigh_samples(path, chain)
       class(contact_path_type), intent(in) :: path
       type(chain_type), intent(inout) :: chain
@@ -486,10 +488,10 @@ contains
       call path%certificate%note_large_increment(chain%traction_error, chain%work_error, reference_work(path, chain))
    end subroutine accept_chain
 
-   !> The work of the forces of all motions, force, from that along `straight` lines between the ends of the increments, or from the
-   !> samples. It is the dissipation and the elastic energy, which straight lines contain exactly; what is missing is divided between
-   !> the motions as are the areas between straight line and path, if all paths have the same shape. (For one motion with a changing
-   !> force this is exact.)
+   !> The work of the forces of all motions, force, from that along `straight` lines between the ends of increments, or from the
+   !> samples. It is the dissipation and the elastic energy, which straight lines contain exactly; what is missing is divided among
+   !> motions as are the areas between straight line and path, if all paths have the same shape. (This is exact for one motion
+   !> with a changing force.)
    pure function work_of_motions(path, chain, straight) result(work)
       class(contact_path_type), intent(in) :: path
       type(chain_type), intent(in) :: chain

@@ -48,8 +48,8 @@ contains
       end associate
    end subroutine keep
 
-   !> The state at the fraction `place`/`parts` of the latest interval with the same loads, on a mesh of `nodes` nodes. `found`: false
-   !> if there is none; `sample` is then unchanged.
+   !> The state at the fraction `place`/`parts` of the latest interval with the same loads, on a mesh of `nodes` nodes. `found`:
+   !> false if there is none; `sample` is then unchanged.
    subroutine find(self, load, nodes, place, parts, sample, found)
       class(recent_intervals_type), intent(in) :: self
       type(load_type), intent(in) :: load(motion_count)
