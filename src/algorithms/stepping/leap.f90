@@ -192,8 +192,8 @@ contains
    end subroutine refine_samples
 
    !> The dissipation of a chain by its samples: by slopes, or node by node if that is exact. Its error is taken to be half the
-   !> difference to the sum node by node, extrapolated at second order, and at least a sixth of that to the sum itself; twice as much
-   !> with two samples.
+   !> difference to the sum node by node, extrapolated at second order, but at least a sixth of that to the sum itself; twice as
+   !> much with two samples.
    subroutine weigh_samples(path, chain)
       class(contact_path_type), intent(in) :: path
       type(chain_type), intent(inout) :: chain
