@@ -321,10 +321,12 @@ contains
    !> Pressures of a group by its displacements, shape (nodes), both in `values`, without the other groups.
    subroutine apply_group(group, values)
       type(group_type), intent(inout) :: group
-      real(wp), intent(inout) :: values(:)
+      real(wp), intent(inout), contiguous :: values(:)
+      real(wp) :: given(size(values))
 
       if (allocated(group%stored)) then
-         values = matmul(group%stored, values)
+         given = values
+         call dgemv('N', size(values), size(values), 1.0_wp, group%stored, size(values), given, 1, 0.0_wp, values, 1)
          return
       end if
       if (size(group%gaps) == 0) then
@@ -442,12 +444,18 @@ contains
    pure subroutine set_polynomials(nodes, points, polynomials)
       integer, intent(in) :: nodes(:), points(:)
       real(wp), intent(out) :: polynomials(:, :)
+      real(wp) :: distance(size(nodes), size(points)), scale
       integer :: i, j
 
-      polynomials = 1.0_wp
+      do j = 1, size(points)
+         distance(:, j) = real(nodes - points(j), wp)
+      end do
       do i = 1, size(points)
+         polynomials(:, i) = 1.0_wp
          do j = 1, size(points)
-            if (j /= i) polynomials(:, i) = polynomials(:, i)*(real(nodes - points(j), wp)/real(points(i) - points(j), wp))
+            if (j == i) cycle
+            scale = 1.0_wp/(points(i) - points(j))
+            polynomials(:, i) = scale*distance(:, j)*polynomials(:, i)
          end do
       end do
    end subroutine set_polynomials
