@@ -14,8 +14,8 @@ module mfv_automatic_system
    public :: automatic_system_type
 
    type, extends(contact_system_type) :: automatic_system_type
-      !> Most nodes in contact for the reduced system.
-      integer :: most = 0
+      !> Most nodes in contact for the reduced system, and where nodes change their status one by one.
+      integer :: most = 0, most_one_by_one = 0
       !> Whether the last solve was by iteration.
       logical, private :: iterates = .false.
       !> (Both allocatable: otherwise gfortran 12 does not free the components of the second.)
@@ -67,8 +67,10 @@ contains
    subroutine choose(self, contact)
       class(automatic_system_type), intent(inout) :: self
       integer, intent(in) :: contact
+      integer :: most
 
-      self%iterates = contact > merge(self%most/2, self%most, self%iterates)
+      most = merge(self%most_one_by_one, self%most, self%one_by_one)
+      self%iterates = contact > merge(most/2, most, self%iterates)
       if (self%iterates) then
          if (allocated(self%reduced)) deallocate (self%reduced)
          if (allocated(self%krylov)) return

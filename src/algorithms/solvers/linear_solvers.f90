@@ -10,8 +10,8 @@ module mfv_linear_solvers
    use mfv_krylov_system, only: krylov_system_type
    use mfv_reduced_system, only: reduced_system_type
    use mfv_scene
-   use mfv_solver_costs, only: least_coupled_leap, least_leap, most_apart, most_at_once, most_at_once_coupled, most_bristles, &
-                               most_bristles_coupled, most_coupled, most_one_way
+   use mfv_solver_costs, only: least_coupled_leap, least_leap, most_after_increments, most_apart, most_at_once, &
+                               most_at_once_coupled, most_bristles, most_bristles_coupled, most_coupled, most_one_way
    implicit none
    private
    public :: new_contact_system, chosen_stepping
@@ -36,6 +36,8 @@ contains
          select type (system)
          type is (automatic_system_type)
             system%most = most_reduced(model)
+            system%most_one_by_one = system%most
+            if (model%scene%method%stepping == stepping_leap) system%most_one_by_one = max(system%most, most_after_increments)
          end select
       case (solver_fft)
          allocate (krylov_system_type :: system)

@@ -5,7 +5,7 @@ module mfv_solver_costs
    implicit none
    private
    public :: least_leap, least_coupled_leap
-   public :: cheapest_solver, seconds_of_solve, most_coupled, most_one_way, most_apart, most_at_once, &
+   public :: cheapest_solver, seconds_of_solve, most_after_increments, most_coupled, most_one_way, most_apart, most_at_once, &
              most_at_once_coupled, most_bristles, most_bristles_coupled
 
    !> Seconds per linear solve with m unknown tractions in event stepping, including all other work: dgesv coefficient*m^3, reduced
@@ -41,6 +41,10 @@ module mfv_solver_costs
    !> In event stepping the limit is that of memory (100 MB coupled, else 2*30 MB) rather than of time.
    integer, parameter :: most_coupled = 1800, most_one_way = 2000, most_apart = 2000, most_at_once = 60, &
                          most_at_once_coupled = 240, most_bristles = 120, most_bristles_coupled = 260
+
+   !> The same for an interval that is followed by events because large increments are too many or not accurate: the system is
+   !> factorised anew for some hundred events.
+   integer, parameter :: most_after_increments = 1000
 
    !> Fewest nodes of the mesh for which stepping='auto' takes large increments if an error is allowed. They take 40 to 200 solves
    !> to press with friction and coupling and 20 to 60 for a half-cycle, on any mesh, events about one for each node that

@@ -123,7 +123,9 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       associate (done => progress%done, goal => progress%goal, length => progress%length)
+         path%system%one_by_one = .true.
          call apply_by_violations(path, subsegment(segment, done, done + length), observer, error)
+         path%system%one_by_one = .false.
          if (allocated(error)) return
          progress%by_violations = .false.
          done = merge(goal, done + length, length >= goal - done)
