@@ -79,9 +79,7 @@ def page(results: dict[str, Any], pictures: Path) -> str:
     parts = [head(results)]
     if "targets" in results:
         parts.append(targets.section(results["targets"], results.get("long")))
-    if "peer" in results:
-        parts.append(peer.section(results["peer"]))
-    for name in ("events", "accuracy", "circle"):
+    for name in ("peer", "events", "accuracy", "circle"):
         if name in results:
             parts.append(MODULES[name].section(results[name], pictures))
     return "\n".join(part.strip("\n") + "\n" for part in parts)
