@@ -41,7 +41,7 @@ FINEST = 8192
 #: CONTACT's times, seconds, for the case of the picture.
 CONTACT_CYCLES = {512: 1.3, 1024: 3.1, 2048: 6.3, 8192: 34.0}
 #: Nodes up to which events are the reference of a job that depends on the path; fewest for which an accuracy then has an effect.
-MOST_BY_EVENTS, FEWEST_BY_INCREMENTS = 2048, 640
+MOST_BY_EVENTS, FEWEST_BY_INCREMENTS = 2048, 384
 
 
 def case_of(steps: Sequence[dict[str, Any]], nodes: int, window: float, mu: float | None, nu: float, coupling: str) -> Case:

@@ -21,6 +21,7 @@ module mfv_contact
    use mfv_kept_state, only: kept_state_type
    use mfv_kinds, only: wp
    use mfv_observer, only: observer_type
+   use mfv_observables, only: observable_count, observables_of
    use mfv_result_fields, only: field_named, field_type, group_fields, result_attributes, result_groups
    use mfv_refinement, only: refine_at_edges
    use mfv_result_file, only: check_writable, is_whole_result, resume_result, write_result
@@ -70,10 +71,11 @@ module mfv_contact
       !> Checkpoints: the file, seconds between them (0: none), and when the next one is due.
       character(:), allocatable :: checkpoint_path
       real(wp), private :: checkpoint_seconds = 0.0_wp, next_checkpoint = 0.0_wp
-      !> Cache until the state changes: paths of all fields, one group of them, warnings, attributes.
+      !> Cache until the state changes: paths of all fields, one group of them, observables, warnings, attributes.
       type(string_type), allocatable, private :: paths(:)
       character(:), allocatable, private :: group
       type(field_type), allocatable, private :: fields(:)
+      real(wp), allocatable, private :: observed(:)
       type(string_type), allocatable, private :: warnings(:), attribute_names(:), attribute_texts(:)
    contains
       procedure :: ask_for
@@ -336,13 +338,14 @@ contains
       character(:), allocatable :: partial
       logical :: exists
 
-      call find_warnings(self)
+      if (self%is_unfinished() .and. self%checkpoint_path == '') return
+      call find_results(self)
       if (self%is_unfinished()) then
-         if (self%checkpoint_path == '') return
-         call write_result(self%checkpoint_path, self%case, self%simulation, self%warnings, error, with_restart=.true.)
+         call write_result(self%checkpoint_path, self%case, self%simulation, self%warnings, error, with_restart=.true., &
+                           observed=self%observed)
          return
       end if
-      call write_result(self%case%result_path, self%case, self%simulation, self%warnings, error)
+      call write_result(self%case%result_path, self%case, self%simulation, self%warnings, error, observed=self%observed)
       if (allocated(error)) return
       partial = with_suffix(self%case%result_path, '.partial')
       inquire (file=partial, exist=exists)
@@ -356,8 +359,8 @@ contains
       real(wp), intent(in) :: seconds
       character(:), allocatable, intent(out) :: text
 
-      call find_warnings(self)
-      call summarize(self%case, self%simulation, self%warnings, seconds, text)
+      call find_results(self)
+      call summarize(self%case, self%simulation, self%warnings, self%observed, seconds, text)
    end subroutine summarize_contact
 
    !> Apply one more step, linearly from the present loads: a force or a displacement in every direction that changes, units as in
@@ -734,6 +737,16 @@ contains
       if (.not. allocated(self%warnings)) call validity_warnings(self%simulation, self%warnings)
    end subroutine find_warnings
 
+   !> Find what a result needs and the cache has not: warnings and observables.
+   subroutine find_results(self)
+      class(contact_type), intent(inout) :: self
+
+      call find_warnings(self)
+      if (allocated(self%observed)) return
+      allocate (self%observed(observable_count))
+      call observables_of(self%simulation, self%observed)
+   end subroutine find_results
+
    !> A body (body_lower, body_upper) under the tractions of the state steps/000N, N = `step`, or of the present state (0, the
    !> default): for interior%all_stresses(x, y), largest_von_mises, largest_tension; see mfv_interior. Error MFV_BAD_ARGUMENT: a
    !> rigid body, a matrix or an unknown step.
@@ -811,8 +824,8 @@ contains
          call set_error(error, MFV_BAD_ARGUMENT, 'no path is given, and the case has no &output file')
          return
       end if
-      call find_warnings(self)
-      call write_result(where_to, self%case, self%simulation, self%warnings, error)
+      call find_results(self)
+      call write_result(where_to, self%case, self%simulation, self%warnings, error, observed=self%observed)
    end subroutine write
 
    !> Clear the cache, before the state changes.
@@ -822,6 +835,7 @@ contains
       if (allocated(self%paths)) deallocate (self%paths)
       if (allocated(self%group)) deallocate (self%group)
       if (allocated(self%fields)) deallocate (self%fields)
+      if (allocated(self%observed)) deallocate (self%observed)
       if (allocated(self%warnings)) deallocate (self%warnings)
       if (allocated(self%attribute_names)) deallocate (self%attribute_names, self%attribute_texts)
    end subroutine forget

@@ -108,11 +108,12 @@ contains
 
    !> The fields of one group; none for an unknown group. The tractions at instants of a cycle (moments/loading and so on) are not
    !> in result files and result_groups.
-   subroutine group_fields(case, simulation, group, fields)
+   subroutine group_fields(case, simulation, group, fields, observed)
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
       character(*), intent(in) :: group
       type(field_type), allocatable, intent(out) :: fields(:)
+      real(wp), intent(in), optional :: observed(:)
       type(list_type) :: list
       integer :: number, code, i
 
@@ -133,7 +134,7 @@ contains
       case ('certificate')
          call add_certificate(list, simulation)
       case ('observables')
-         call add_observables(list, simulation)
+         call add_observables(list, simulation, observed)
       case ('patches')
          call add_patches(list, simulation)
       case ('cycles')
@@ -492,13 +493,18 @@ contains
    end subroutine add_edges
 
    !> Observables of the load history, where defined.
-   subroutine add_observables(list, simulation)
+   subroutine add_observables(list, simulation, observed)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
+      real(wp), intent(in), optional :: observed(:)
       real(wp) :: values(observable_count)
       integer :: i
 
-      call observables_of(simulation, values)
+      if (present(observed)) then
+         values = observed
+      else
+         call observables_of(simulation, values)
+      end if
       do i = 1, observable_count
          if (ieee_is_nan(values(i))) cycle
          associate (row => observables(i))

@@ -8,6 +8,7 @@ module mfv_result_file
    use mfv_hdf5_reader, only: close_read, has, open_to_read, read_text_attribute
    use mfv_hdf5_restart, only: read_restart, restart_fields, restart_group
    use mfv_hdf5_writer
+   use mfv_kinds, only: wp
    use mfv_result_fields
    use mfv_simulation, only: simulation_type
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, MFV_INTERRUPTED, status_outcome
@@ -85,15 +86,17 @@ contains
       end if
    end subroutine resume_open_file
 
-   !> Write the result of a case to `path`, with its `warnings` (see mfv_validity). `with_restart`: with restart data. Error
+   !> Write the result of a case to `path`, with its `warnings` (see mfv_validity). `with_restart`: with restart data. `observed`:
+   !> the observables (mfv_observables), if they are known. Error
    !> MFV_FILE_ERROR, also if check_writable refuses; an earlier file is then unchanged.
-   subroutine write_result(path, case, simulation, warnings, error, with_restart)
+   subroutine write_result(path, case, simulation, warnings, error, with_restart, observed)
       character(*), intent(in) :: path
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
       type(string_type), intent(in) :: warnings(:)
       type(error_type), allocatable, intent(out) :: error
       logical, intent(in), optional :: with_restart
+      real(wp), intent(in), optional :: observed(:)
       type(writer_type) :: writer
       type(string_type), allocatable :: names(:), texts(:)
       integer :: i
@@ -106,16 +109,17 @@ contains
             call write_text(writer, writer%file, names(i)%text, texts(i)%text)
          end do
          call write_hdf5_version(writer)
-         call write_groups(writer, case, simulation, with_restart)
+         call write_groups(writer, case, simulation, observed, with_restart)
       end if
       call finish_file(path, 'the result', writer, error)
    end subroutine write_result
 
    !> All groups with their datasets.
-   subroutine write_groups(writer, case, simulation, with_restart)
+   subroutine write_groups(writer, case, simulation, observed, with_restart)
       type(writer_type), intent(inout) :: writer
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
+      real(wp), intent(in), optional :: observed(:)
       logical, intent(in), optional :: with_restart
       type(string_type), allocatable :: groups(:)
       type(field_type), allocatable :: fields(:), scales(:)
@@ -125,7 +129,7 @@ contains
       groups = result_groups(simulation)
       if (simulation%snapshot_count > 0) call create_group(writer, 'steps')
       do i = 1, size(groups)
-         call group_fields(case, simulation, groups(i)%text, fields)
+         call group_fields(case, simulation, groups(i)%text, fields, observed)
          if (size(fields) > 0) call write_group(writer, groups(i)%text, fields, scales)
       end do
       if (.not. present(with_restart)) return

@@ -19,12 +19,13 @@ module mfv_summary
 
 contains
 
-   !> The result, one quantity per line. `warnings`: see mfv_validity. `seconds`: wall-clock time of the run.
-   subroutine summarize(case, simulation, warnings, seconds, text)
+   !> The result, one quantity per line. `warnings`: see mfv_validity; `observed`: see mfv_observables. `seconds`: wall-clock time
+   !> of the run.
+   subroutine summarize(case, simulation, warnings, observed, seconds, text)
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
       type(string_type), intent(in) :: warnings(:)
-      real(wp), intent(in) :: seconds
+      real(wp), intent(in) :: observed(:), seconds
       character(:), allocatable, intent(out) :: text
       type(field_type), allocatable :: fields(:), seen(:)
       character(:), allocatable :: words
@@ -45,7 +46,7 @@ contains
             call add_line(text, 'tangential force', amount(fields, 'tangential_force')//', shift '//amount(fields, 'shift'))
             call add_line(text, 'dissipation', amount(fields, 'dissipation'))
          end if
-         call group_fields(case, simulation, 'observables', seen)
+         call group_fields(case, simulation, 'observables', seen, observed)
          if (simulation%cycle_count > 0) call add_last_cycle(text, seen)
          do i = 1, motion_count
             if (.not. (motions(i)%optional .and. model%moves(i))) cycle

@@ -3,6 +3,7 @@ module mfv_result_file
    use mfv_case, only: case_type
    use mfv_error, only: error_type, set_error
    use mfv_features, only: no_hdf5_message
+   use mfv_kinds, only: wp
    use mfv_simulation, only: simulation_type
    use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
    use mfv_strings, only: string_type
@@ -40,12 +41,13 @@ contains
    end subroutine resume_result
 
    !> Error MFV_FILE_ERROR, always.
-   subroutine write_result(path, case, simulation, warnings, error, with_restart)
+   subroutine write_result(path, case, simulation, warnings, error, with_restart, observed)
       character(*), intent(in) :: path
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
       type(string_type), intent(in) :: warnings(:)
       logical, intent(in), optional :: with_restart
+      real(wp), intent(in), optional :: observed(:)
       type(error_type), allocatable, intent(out) :: error
 
       call check_writable(path, error)
