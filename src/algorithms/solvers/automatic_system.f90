@@ -14,7 +14,7 @@ module mfv_automatic_system
    public :: automatic_system_type
 
    type, extends(contact_system_type) :: automatic_system_type
-      !> Most nodes in contact for the reduced system, and where nodes change their status one by one.
+      !> Most nodes in contact for the reduced system; the same where nodes change their status one by one.
       integer :: most = 0, most_one_by_one = 0
       !> Whether the last solve was by iteration.
       logical, private :: iterates = .false.
@@ -70,7 +70,7 @@ contains
       integer :: most
 
       most = merge(self%most_one_by_one, self%most, self%one_by_one)
-      self%iterates = contact > merge(most/2, most, self%iterates)
+      self%iterates = contact > merge(most/2, most, self%iterates .and. .not. self%one_by_one)
       if (self%iterates) then
          if (allocated(self%reduced)) deallocate (self%reduced)
          if (allocated(self%krylov)) return

@@ -11,7 +11,7 @@ module mfv_contact_system
    public :: contact_system_type, load_type, response_type, constraints_type, prescribed_type, find_prescribed, initial_loads
    public :: rates_of_loads, rates_at_end, rates_of_fronts, rates_of_derivatives, kinds_of_rates
 
-   !> Kinds of rates: of the loads, of the loads at the end of a large increment, and with the slip of fronts to the left and right;
+   !> Kinds of rates: of the loads, of the loads at states of large increments, and with the slip of fronts to the left and right;
    !> and derivatives with respect to parameters.
    integer, parameter :: rates_of_loads = 1, rates_at_end = 2, rates_of_fronts(2) = [3, 4], rates_of_derivatives = 5, &
                          kinds_of_rates = 5

@@ -78,8 +78,8 @@ contains
       allocate (self%contact, self%held)
    end subroutine prepare
 
-   !> Whether the direct blocks of a compliance have the entries of `kernel` by distance: that of a half-plane. Seen from rows at
-   !> the ends and in the middle.
+   !> Whether the direct blocks of a compliance have the entries of `kernel` by distance: that of a half-plane. (Judged by rows
+   !> at the ends and in the middle.)
    pure logical function has_kernel(compliance, kernel)
       class(compliance_type), intent(in) :: compliance
       real(wp), intent(in) :: kernel(:)
@@ -89,7 +89,7 @@ contains
       integer :: all_nodes(compliance%nodes), i, j, node
 
       all_nodes = [(i, i=1, compliance%nodes)]
-      has_kernel = all(compliance%has_block(blocks))
+      has_kernel = compliance%is_half_plane .and. all(compliance%has_block(blocks))
       do i = 1, size(blocks)
          do j = 0, 2
             if (.not. has_kernel) return

@@ -42,8 +42,8 @@ module mfv_solver_costs
    integer, parameter :: most_coupled = 1800, most_one_way = 2000, most_apart = 2000, most_at_once = 60, &
                          most_at_once_coupled = 240, most_bristles = 120, most_bristles_coupled = 260
 
-   !> The same for an interval that is followed by events because large increments are too many or not accurate: the system is
-   !> factorised anew for some hundred events.
+   !> Most nodes in contact for the reduced system in an interval that is followed by events because large increments are too many
+   !> or not accurate: the system is factorised anew for some hundred events.
    integer, parameter :: most_after_increments = 1000
 
    !> Fewest nodes of the mesh for which stepping='auto' takes large increments if an error is allowed. They take 40 to 200 solves

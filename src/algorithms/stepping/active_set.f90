@@ -108,6 +108,7 @@ contains
          by_edges = .false.
          first = solve + 1
       end do
+      found = .false.
    end subroutine find_statuses
 
    !> Solve for the fields at the end of an increment, which contain a first guess. `hold`: the slip at which nodes hold, length,

@@ -54,8 +54,8 @@ module mfv_chain
       real(wp) :: node_wise = 0.0_wp, node_wise_error = 0.0_wp
       !> The former with half as many increments or samples, force.
       real(wp) :: coarse_node_wise = 0.0_wp
-      !> Work of the forces of all motions by the samples, force.
-      real(wp) :: motion_work(motion_count) = 0.0_wp
+      !> Dissipation and work of the forces of all motions by the samples, force.
+      real(wp) :: by_slopes = 0.0_wp, motion_work(motion_count) = 0.0_wp
    end type chain_type
 
 contains
@@ -212,6 +212,7 @@ contains
       logical, intent(out) :: found
       type(sample_type), allocatable :: coarse(:)
       type(contact_state_type) :: present_state
+      type(contact_fields_type) :: rates
       integer :: i, solves
 
       solves = path%system%solves
@@ -232,7 +233,8 @@ contains
             associate (sample => chain%samples(i))
                sample%status = chain%before(i)%status
                sample%fields = chain%after(i)
-               call find_rates_after(path, interval, chain, i, .true., sample%rates, found)
+               call find_rates_after(path, interval, chain, i, .true., rates, found)
+               call sample%rates%copy_from(rates)
             end associate
             if (.not. found) exit
          end do

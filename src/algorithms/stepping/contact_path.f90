@@ -122,6 +122,7 @@ module mfv_contact_path
       private
       type(path_position_type) :: position
       class(contact_system_type), allocatable :: system
+      type(recent_intervals_type) :: recent
       integer :: records = 0, added = 0
       logical :: tangential = .false., moves(motion_count) = .false.
    end type saved_path_type
@@ -200,6 +201,7 @@ contains
       ! Explicit deallocation: gfortran 12 leaks a polymorphic component on assignment.
       if (allocated(saved%system)) deallocate (saved%system)
       allocate (saved%system, source=self%system)
+      saved%recent = self%recent
       saved%records = self%history%records
       saved%added = self%model%added
       saved%tangential = self%model%tangential
@@ -221,6 +223,7 @@ contains
       end if
       deallocate (self%system)
       allocate (self%system, source=saved%system)
+      self%recent = saved%recent
       self%history%records = min(saved%records, self%history%records)
    end subroutine restore
 

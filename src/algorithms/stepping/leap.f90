@@ -24,7 +24,7 @@ module mfv_leap
    use mfv_error, only: error_type
    use mfv_first_violation, only: apply_by_violations
    use mfv_kinds, only: wp
-   use mfv_motions, only: motion_count, motion_approach, motion_shift, control_force
+   use mfv_motions, only: motion_count, motion_approach, motion_shift
    use mfv_node_status
    use mfv_observer, only: observer_type
    use mfv_straight, only: apply_directly, before_separation, lacks_support, find_statuses_on_mesh, finish_large_increment, &
@@ -199,13 +199,14 @@ contains
    subroutine weigh_samples(path, chain)
       class(contact_path_type), intent(in) :: path
       type(chain_type), intent(inout) :: chain
-      real(wp) :: by_slopes, by_nodes, error, few
+      real(wp) :: by_nodes, error, few
 
-      call dissipation_by_slopes(path%model, chain%samples, chain%changes, by_slopes, error, chain%motion_work)
+      call dissipation_by_slopes(path%model, chain%samples, chain%changes, chain%by_slopes, error, chain%motion_work)
       by_nodes = chain%node_wise + (chain%node_wise - chain%coarse_node_wise)/3.0_wp
-      chain%work = by_slopes
+      chain%work = chain%by_slopes
       few = merge(2.0_wp, 1.0_wp, ubound(chain%samples, 1) == 2)
-      chain%work_error = max(few*abs(by_slopes - by_nodes)/2.0_wp, few*abs(by_slopes - chain%node_wise)/6.0_wp, error)
+      chain%work_error = max(few*abs(chain%by_slopes - by_nodes)/2.0_wp, &
+                             few*abs(chain%by_slopes - chain%node_wise)/6.0_wp, error)
       if (chain%node_wise_error <= chain%work_error) then
          chain%work = chain%node_wise
          chain%work_error = chain%node_wise_error
@@ -241,6 +242,10 @@ contains
       chain%found = found
       chain%before(chain%increments)%status = path%state%status
       chain%before(chain%increments)%stuck_slip = path%state%stuck_slip
+      if (found .and. allocated(chain%samples)) then
+         chain%samples(ubound(chain%samples, 1))%status = path%state%status
+         call chain%samples(ubound(chain%samples, 1))%fields%copy_from(chain%after(chain%increments))
+      end if
       path%state = start
    end subroutine finish_chain
 
@@ -393,7 +398,9 @@ contains
          finer%traction_error = finer%start_error &
                                 + refinement*max(maxval(abs(a%pressure - b%pressure)), maxval(abs(a%shear - b%shear)))
       end associate
-      finer%coarse_node_wise = coarser%node_wise
+      ! As if with half as many increments, at second order.
+      finer%coarse_node_wise = finer%node_wise - 3.0_wp*(finer%node_wise - coarser%node_wise) &
+                               /((real(finer%increments, wp)/coarser%increments)**2 - 1.0_wp)
       call find_dissipation(path, interval, coarser, finer)
       if (finer%node_wise > 0.0_wp) finer%friction_work = finer%friction_work*(finer%work/finer%node_wise)
    end subroutine compare
@@ -491,9 +498,9 @@ contains
    end subroutine accept_chain
 
    !> The work of the forces of all motions, force, from that along `straight` lines between the ends of increments, or from the
-   !> samples. It is the dissipation and the elastic energy, which straight lines contain exactly; what is missing is divided among
-   !> motions as are the areas between straight line and path, if all paths have the same shape. (This is exact for one motion
-   !> with a changing force.)
+   !> samples. Either contains the elastic energy (with Goodman's coupling, its work along these lines or through the samples); what
+   !> is missing to the dissipation is divided among motions as are the areas between straight line and path, if all paths have the
+   !> same shape. (This is exact for one motion with a changing force.)
    pure function work_of_motions(path, chain, straight) result(work)
       class(contact_path_type), intent(in) :: path
       type(chain_type), intent(in) :: chain
@@ -502,12 +509,15 @@ contains
       integer :: i
 
       work = straight
-      if (allocated(chain%samples)) work = chain%motion_work
-      missing = sum(straight - work)
+      missing = 0.0_wp
       do i = 1, chain%increments
-         missing = missing + path%model%force(chain%friction_work(:, i)) &
-                   - straight_dissipation(path%model, begin(i), chain%after(i))
+         missing = missing + path%model%force(chain%friction_work(:, i))
+         if (.not. allocated(chain%samples)) missing = missing - straight_dissipation(path%model, begin(i), chain%after(i))
       end do
+      if (allocated(chain%samples)) then
+         work = chain%motion_work
+         missing = missing - chain%by_slopes
+      end if
       associate (start => chain%before(1)%fields, end => chain%after(chain%increments))
          area = abs((end%force - start%force)*(end%motion - start%motion))
       end associate

@@ -1,4 +1,4 @@
-!> States within the last load intervals: a first guess where a cycle repeats them.
+!> States within the last different load intervals: a first guess where a cycle repeats them.
 module mfv_recent_intervals
    use mfv_chain_dissipation, only: sample_type
    use mfv_contact_system, only: load_type
@@ -29,15 +29,22 @@ module mfv_recent_intervals
 
 contains
 
-   !> Keep the `samples` of an interval, shape (0:samples), without their rates.
+   !> Keep the `samples` of an interval, shape (0:samples), without their rates, in place of those of an equal one or the oldest.
    subroutine keep(self, load, samples)
       class(recent_intervals_type), intent(inout) :: self
       type(load_type), intent(in) :: load(motion_count)
       type(sample_type), intent(in) :: samples(0:)
-      integer :: i
+      integer :: i, place
 
-      self%last = 1 + modulo(self%last, most_intervals)
-      associate (interval => self%intervals(self%last))
+      place = 0
+      do i = 1, most_intervals
+         if (allocated(self%intervals(i)%samples) .and. all(same(self%intervals(i)%load, load))) place = i
+      end do
+      if (place == 0) then
+         self%last = 1 + modulo(self%last, most_intervals)
+         place = self%last
+      end if
+      associate (interval => self%intervals(place))
          interval%load = load
          if (allocated(interval%samples)) deallocate (interval%samples)
          allocate (interval%samples(0:ubound(samples, 1)))
@@ -48,7 +55,7 @@ contains
       end associate
    end subroutine keep
 
-   !> The state at the fraction `place`/`parts` of the latest interval with the same loads, on a mesh of `nodes` nodes. `found`:
+   !> The state at the fraction `place`/`parts` of the interval with the same loads, on a mesh of `nodes` nodes. `found`:
    !> false if there is none; `sample` is then unchanged.
    subroutine find(self, load, nodes, place, parts, sample, found)
       class(recent_intervals_type), intent(in) :: self
@@ -56,11 +63,10 @@ contains
       integer, intent(in) :: nodes, place, parts
       type(sample_type), intent(inout) :: sample
       logical, intent(out) :: found
-      integer :: age, i, count
+      integer :: i, count
 
       found = .false.
-      do age = 0, most_intervals - 1
-         i = 1 + modulo(self%last - 1 - age, most_intervals)
+      do i = 1, most_intervals
          associate (interval => self%intervals(i))
             if (.not. allocated(interval%samples)) return
             if (.not. all(same(interval%load, load))) cycle

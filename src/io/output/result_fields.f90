@@ -107,7 +107,7 @@ contains
    end function padded_step_group
 
    !> The fields of one group; none for an unknown group. The tractions at instants of a cycle (moments/loading and so on) are not
-   !> in result files and result_groups.
+   !> in result files and result_groups. `observed`: the observables, if they are known.
    subroutine group_fields(case, simulation, group, fields, observed)
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
