@@ -609,7 +609,7 @@ contains
       if (.not. allocated(self%paths)) then
          groups = result_groups(self%simulation)
          do i = 1, size(groups)
-            call group_fields(self%case, self%simulation, groups(i)%text, fields)
+            call group_fields(self%case, self%simulation, groups(i)%text, fields, self%observed)
             do j = 1, size(fields)
                call add_text(self%paths, groups(i)%text//'/'//fields(j)%name)
             end do
@@ -635,7 +635,7 @@ contains
       slash = index(path, '/', back=.true.)
       if (slash > 1) then
          if (.not. is_at_hand(self%group, path(:slash - 1))) then
-            call group_fields(self%case, self%simulation, path(:slash - 1), self%fields)
+            call group_fields(self%case, self%simulation, path(:slash - 1), self%fields, self%observed)
             self%group = path(:slash - 1)
          end if
          if (len_trim(path) == len(path)) number = field_named(self%fields, path(slash + 1:))

@@ -9,7 +9,7 @@
 !> inverses for a few values of c. Nodes whose friction decreases with slip (c < 0) are treated as independent: where the bodies
 !> can unload as fast as friction decreases, |c| dominates C_ut + c.
 module mfv_krylov_preconditioner
-   use mfv_compliance, only: block_ut, block_wp, compliance_type
+   use mfv_compliance, only: block_wp, compliance_type
    use mfv_fourier, only: back_transform, fast_length, real_transform
    use mfv_half_plane, only: log_kernel
    use mfv_kinds, only: wp
@@ -30,9 +30,9 @@ module mfv_krylov_preconditioner
       private
       !> Entries by distance, length^3/force in the units of the system.
       real(wp), allocatable :: kernel(:)
-      !> Whether the entries of both blocks are these and a constant.
-      logical :: same_kernel = .false.
-      real(wp) :: constant = 0.0_wp
+      !> What the entries of the blocks next to the diagonal, and all of those of half-planes, have beyond the kernel.
+      real(wp), public :: constant = 0.0_wp
+      logical :: is_half_plane = .false.
       !> (Both allocatable: otherwise gfortran 12 does not free the components of the second.)
       type(block_type), allocatable :: contact, held
       !> Softness of the held nodes, shape (held), if any is nonzero; weights of the levels, shape (held, 0 to levels), and the
@@ -73,40 +73,16 @@ contains
       least = factor*(2.0_wp*log(16.0_wp*n) + 2.0_wp)
       self%kernel = [(max(near(1, 1), least) - factor*log_kernel(2.0_wp*distance), distance=0, 4*n)]/unit
       self%constant = near(1, 1)/unit - self%kernel(1)
-      self%same_kernel = has_kernel(compliance, unit*(self%kernel + self%constant))
+      self%is_half_plane = compliance%is_half_plane
       if (allocated(self%contact)) deallocate (self%contact, self%held)
       allocate (self%contact, self%held)
    end subroutine prepare
 
-   !> Whether the direct blocks of a compliance have the entries of `kernel` by distance: that of a half-plane. (Judged by rows
-   !> at the ends and in the middle.)
-   pure logical function has_kernel(compliance, kernel)
-      class(compliance_type), intent(in) :: compliance
-      real(wp), intent(in) :: kernel(:)
-      integer, parameter :: blocks(2) = [block_wp, block_ut]
-      real(wp), parameter :: round_off = 1.0e-13_wp
-      real(wp) :: row(1, compliance%nodes)
-      integer :: all_nodes(compliance%nodes), i, j, node
-
-      all_nodes = [(i, i=1, compliance%nodes)]
-      has_kernel = compliance%is_half_plane .and. all(compliance%has_block(blocks))
-      do i = 1, size(blocks)
-         do j = 0, 2
-            if (.not. has_kernel) return
-            node = 1 + (j*(compliance%nodes - 1))/2
-            call compliance%entries(blocks(i), [node], all_nodes, row)
-            has_kernel = maxval(abs(row(1, :) - kernel(abs(all_nodes - node) + 1))) <= round_off*maxval(abs(row))
-         end do
-      end do
-   end function has_kernel
-
    !> Whether the inverses are those of the blocks without the `constant` in their entries, up to round-off.
-   logical function is_exact(self, constant)
+   pure logical function is_exact(self)
       class(krylov_preconditioner_type), intent(in) :: self
-      real(wp), intent(out) :: constant
 
-      constant = self%constant
-      is_exact = self%same_kernel .and. .not. self%soft
+      is_exact = self%is_half_plane .and. .not. self%soft
       if (is_exact) is_exact = self%contact%inverse%group_count() <= 1 .and. self%held%inverse%group_count() <= 1
    end function is_exact
 

@@ -19,7 +19,7 @@ module mfv_active_set
    use mfv_sticking_front, only: find_fronts, fronts_type, left, right
    implicit none
    private
-   public :: find_statuses, first_guess, find_rates, slipping_back
+   public :: find_statuses, first_guess, find_rates, slipping_back, end_of_run
 
    !> Violations below this fraction of the largest magnitude of their type are round-off.
    real(wp), parameter :: round_off = 1.0e-11_wp
@@ -416,6 +416,17 @@ contains
       end function closes
    end subroutine follow_neighbours
 
+   !> The last of the nodes from `first` on that all have its two statuses.
+   pure integer function end_of_run(one, other, first) result(last)
+      integer, intent(in) :: one(:), other(:), first
+
+      last = first
+      do while (last < size(one))
+         if (one(last + 1) /= one(first) .or. other(last + 1) /= other(first)) exit
+         last = last + 1
+      end do
+   end function end_of_run
+
    !> If the changing nodes lie at one edge of their zone, move the edge to where it belongs (see above). `held`: see find_statuses.
    subroutine move_edges(status, wanted, held)
       integer, intent(in) :: status(:)
@@ -430,10 +441,7 @@ contains
       do while (first <= n)
          last = first
          if (original(first) /= status(first)) then
-            do while (last < n)
-               if (status(last + 1) /= status(first) .or. original(last + 1) /= original(first)) exit
-               last = last + 1
-            end do
+            last = end_of_run(status, original, first)
             left = .true.
             right = .true.
             if (first > 1) left = status(first - 1) /= status(first)

@@ -4,7 +4,7 @@
 !> that stick within an increment (mfv_sticking_front), so that few increments suffice for them. The dissipation needs more states:
 !> each is found as one increment from the end of the chain's increment before it, without changing the chain.
 module mfv_chain
-   use mfv_active_set, only: find_rates
+   use mfv_active_set, only: end_of_run, find_rates
    use mfv_chain_dissipation, only: node_wise_dissipation, sample_type
    use mfv_compliance, only: block_wt
    use mfv_contact_fields, only: contact_fields_type
@@ -16,7 +16,7 @@ module mfv_chain
    use mfv_straight, only: find_statuses_on_mesh
    implicit none
    private
-   public :: chain_type, make_chain, add_samples, add_node_wise_work, find_rates_after
+   public :: chain_type, make_chain, add_samples, find_rates_after
 
    !> Where contact begins, event stepping resolves the touching of single nodes. The shear tractions next to that point, or next to
    !> the edge of a contact without slip zones, differ by up to this, relative to the largest traction, over the number of nodes in
@@ -37,7 +37,7 @@ module mfv_chain
       type(contact_fields_type), allocatable :: after(:)
       !> Evenly spaced states from the start to the end, shape (0:samples), a multiple of `increments`; not allocated: none yet.
       type(sample_type), allocatable :: samples(:)
-      !> Friction dissipation of each increment, force/length, shape (nodes, increments).
+      !> Friction dissipation of each increment by node_wise_dissipation, force/length, shape (nodes, increments).
       real(wp), allocatable :: friction_work(:, :)
       !> Whether the statuses were found; if not, whether only the mesh was too short.
       logical :: found = .false., exceeded = .false.
@@ -50,7 +50,7 @@ module mfv_chain
       !> Estimated errors of the final tractions, and their part where contact begins, force/length^2; of the dissipation, force;
       !> the dissipation, force, and the largest traction, force/length^2.
       real(wp) :: traction_error = 0.0_wp, start_error = 0.0_wp, work_error = 0.0_wp, work = 0.0_wp, traction = 0.0_wp
-      !> The dissipation by node_wise_dissipation and its estimated error, force.
+      !> The sum of `friction_work` and its estimated error, force.
       real(wp) :: node_wise = 0.0_wp, node_wise_error = 0.0_wp
       !> The former with half as many increments or samples, force.
       real(wp) :: coarse_node_wise = 0.0_wp
@@ -102,6 +102,7 @@ contains
       end do
       chain%solves = chain%solves + path%system%solves
       if (allocated(held)) call move_alloc(held, chain%held)
+      chain%work = chain%node_wise
       if (chain%found) call find_start_error(path, present_state%status, interval, chain)
       path%state = present_state
    end subroutine make_chain
@@ -202,8 +203,8 @@ contains
       count_changes = count(before /= after .and. .not. (slips(before) .and. after == node_stick))
    end function count_changes
 
-   !> Double the number of samples; at first take the `start`, with its rates, and the ends of the increments. The dissipation node
-   !> by node is summed anew. `found`: false if a state or its rates are not found. `path` is unchanged.
+   !> Double the number of samples, and sum the dissipation node by node anew; at first take the `start`, with its rates, and the
+   !> ends of the increments. `found`: false if a state or its rates are not found. `path` is unchanged.
    subroutine add_samples(path, interval, start, chain, found)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
@@ -226,6 +227,7 @@ contains
             path%state = present_state
             if (.not. found) exit
          end do
+         if (found) call sum_samples(path, chain)
       else
          allocate (chain%samples(0:chain%increments))
          chain%samples(0) = start
@@ -240,7 +242,6 @@ contains
          end do
       end if
       chain%solves = chain%solves + path%system%solves - solves
-      if (found) call sum_samples(path, chain)
    end subroutine add_samples
 
    !> Find sample `i`, midway between two known ones. `path` is left at the start of the increment.
@@ -285,11 +286,7 @@ contains
       status = before
       first = 1
       do while (first <= n)
-         last = first
-         do while (last < n)
-            if (before(last + 1) /= before(first) .or. after(last + 1) /= after(first)) exit
-            last = last + 1
-         end do
+         last = end_of_run(before, after, first)
          half = (last - first + 1)/2
          from_left = .false.
          from_right = .false.
@@ -315,18 +312,16 @@ contains
       integer :: i, increment, each
 
       each = ubound(chain%samples, 1)/chain%increments
-      if (each > 1) chain%coarse_node_wise = chain%node_wise
+      chain%coarse_node_wise = chain%node_wise
       chain%friction_work = 0.0_wp
       chain%node_wise = 0.0_wp
       chain%node_wise_error = 0.0_wp
       do i = 1, ubound(chain%samples, 1)
          increment = 1 + (i - 1)/each
          before = chain%before(increment)
-         if (each > 1) then
-            before%fields = chain%samples(i - 1)%fields
-            before%status = chain%samples(i)%status
-            where (before%status /= node_stick) before%stuck_slip = before%fields%slip()
-         end if
+         before%fields = chain%samples(i - 1)%fields
+         before%status = chain%samples(i)%status
+         where (before%status /= node_stick) before%stuck_slip = before%fields%slip()
          call add_node_wise_work(path, chain, increment, before, chain%samples(i)%fields)
       end do
    end subroutine sum_samples

@@ -17,7 +17,7 @@
 !>
 !> Otherwise, with rates at both ends of the interval, the smooth sum is integrated with Hermite's polynomials of the fifth degree
 !> through the values and slopes at three states each. In Mindlin's problem the shift goes as (1 - q) ln(1 - q), q = Q/(mu P), and
-!> four such intervals up to q = 0.8 give the dissipation to 3e-4, where Simpson's rule is off by 2e-3.
+!> four intervals up to q = 0.8 give the dissipation to 2e-4, where Simpson's rule is off by 4e-3.
 module mfv_chain_dissipation
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: contact_model_type

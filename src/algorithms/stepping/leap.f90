@@ -211,7 +211,6 @@ contains
          chain%work = chain%node_wise
          chain%work_error = chain%node_wise_error
       end if
-      if (chain%node_wise > 0.0_wp) chain%friction_work = chain%friction_work*(chain%work/chain%node_wise)
    end subroutine weigh_samples
 
    !> Allow errors of iterative solvers that are negligible beside that of a chain: of the rates, only signs and corrections of
@@ -402,7 +401,6 @@ contains
       finer%coarse_node_wise = finer%node_wise - 3.0_wp*(finer%node_wise - coarser%node_wise) &
                                /((real(finer%increments, wp)/coarser%increments)**2 - 1.0_wp)
       call find_dissipation(path, interval, coarser, finer)
-      if (finer%node_wise > 0.0_wp) finer%friction_work = finer%friction_work*(finer%work/finer%node_wise)
    end subroutine compare
 
    !> The dissipation of the finer of two chains and its estimated error.
@@ -477,46 +475,48 @@ contains
                   *max(path%certificate%traction_scale(), maxval(abs(fields%pressure)))
    end function has_shear
 
-   !> Accept the increments of a chain.
+   !> Accept the increments of a chain. The dissipation of each node is scaled to that of the chain.
    subroutine accept_chain(path, interval, chain)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
       type(chain_type), intent(in) :: chain
-      real(wp) :: before(motion_count)
+      real(wp) :: before(motion_count), share
       integer :: i
 
+      share = 1.0_wp
+      if (chain%node_wise > 0.0_wp) share = chain%work/chain%node_wise
       before = path%work
       do i = 1, chain%increments
          path%state%status = chain%before(i)%status
          path%state%stuck_slip = chain%before(i)%stuck_slip
          call path%take_increment(chain%after(i), chain%after(i)%slip() - path%state%fields%slip(), 0.0_wp, &
-                                  friction_work=chain%friction_work(:, i))
+                                  friction_work=share*chain%friction_work(:, i))
       end do
-      path%work = before + work_of_motions(path, chain, path%work - before)
+      path%work = before + work_of_motions(path, chain, share*chain%node_wise, path%work - before)
       if (allocated(chain%samples)) call path%recent%keep(interval%load, chain%samples)
       call path%certificate%note_large_increment(chain%traction_error, chain%work_error, reference_work(path, chain))
    end subroutine accept_chain
 
    !> The work of the forces of all motions, force, from that along `straight` lines between the ends of increments, or from the
-   !> samples. Either contains the elastic energy (with Goodman's coupling, its work along these lines or through the samples); what
-   !> is missing to the dissipation is divided among motions as are the areas between straight line and path, if all paths have the
-   !> same shape. (This is exact for one motion with a changing force.)
-   pure function work_of_motions(path, chain, straight) result(work)
+   !> samples. Either contains the elastic energy (with Goodman's coupling, its work along these lines or through the samples). The
+   !> rest of what is `dissipated`, force, is divided among motions as are the areas between straight line and path, if all paths
+   !> have the same shape. (This is exact for one motion with a changing force.)
+   pure function work_of_motions(path, chain, dissipated, straight) result(work)
       class(contact_path_type), intent(in) :: path
       type(chain_type), intent(in) :: chain
-      real(wp), intent(in) :: straight(motion_count)
+      real(wp), intent(in) :: dissipated, straight(motion_count)
       real(wp) :: work(motion_count), area(motion_count), missing
       integer :: i
 
-      work = straight
-      missing = 0.0_wp
-      do i = 1, chain%increments
-         missing = missing + path%model%force(chain%friction_work(:, i))
-         if (.not. allocated(chain%samples)) missing = missing - straight_dissipation(path%model, begin(i), chain%after(i))
-      end do
       if (allocated(chain%samples)) then
          work = chain%motion_work
-         missing = missing - chain%by_slopes
+         missing = dissipated - chain%by_slopes
+      else
+         work = straight
+         missing = dissipated
+         do i = 1, chain%increments
+            missing = missing - straight_dissipation(path%model, begin(i), chain%after(i))
+         end do
       end if
       associate (start => chain%before(1)%fields, end => chain%after(chain%increments))
          area = abs((end%force - start%force)*(end%motion - start%motion))

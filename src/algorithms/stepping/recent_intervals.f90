@@ -56,7 +56,7 @@ contains
    end subroutine keep
 
    !> The state at the fraction `place`/`parts` of the interval with the same loads, on a mesh of `nodes` nodes. `found`:
-   !> false if there is none; `sample` is then unchanged.
+   !> whether there is one; if not, `sample` keeps its value.
    subroutine find(self, load, nodes, place, parts, sample, found)
       class(recent_intervals_type), intent(in) :: self
       type(load_type), intent(in) :: load(motion_count)
