@@ -53,6 +53,8 @@ contains
       complex(wp), intent(in) :: first(:), last(:)
       real(wp) :: pressure, sum, middle, half, ratio, square, power, growth, tilted
       integer :: j, k
+      !> Factors of the series of the distant elements.
+      real(wp), parameter :: factor(most_terms) = [(2.0_wp/(2*k + 1), k=1, most_terms)]
 
       pressure = 0.0_wp
       sum = 0.0_wp
@@ -64,10 +66,10 @@ contains
             square = ratio**2
             power = 1.0_wp
             tilted = 0.0_wp
-            do k = 3, 2*most_terms + 1, 2
+            do k = 1, most_terms
                if (power <= 0.1_wp*epsilon(1.0_wp)) exit
                power = power*square
-               tilted = tilted - 2.0_wp*power/k
+               tilted = tilted - factor(k)*power
             end do
             growth = ratio*(2.0_wp - tilted)
          else

@@ -20,7 +20,7 @@ module mfv_surface_tractions
       real(wp), allocatable :: contact(:, :), stick(:, :)
       logical, allocatable :: sharp(:, :)
       real(wp) :: beta = 0.0_wp
-      !> Minimum of elements in a contact zone: with fewer, the point of the largest von Mises stress, a flat maximum, would
+      !> Minimum of elements in all contact zones: with fewer, the point of the largest von Mises stress, a flat maximum, would
       !> move to their ends.
       integer :: fewest_elements = 300
    end type zone_list_type
@@ -85,11 +85,13 @@ contains
       logical, allocatable :: sharp(:, :)
       integer, allocatable :: owner(:)
       real(wp), parameter :: near = 1.0e-6_wp
-      integer :: i
+      integer, parameter :: fewest_in_zone = 60
+      integer :: fewest, i
 
       allocate (elements%from(0), elements%to(0), elements%edges(0), elements%first(0), elements%last(0))
       patch%graded = maxval(width) - minval(width) > near*maxval(width)
       call assign_nodes(arc, width, abs(pressure) > 0.0_wp .or. abs(shear) > 0.0_wp, zones, edges, sharp, owner)
+      fewest = max(zones%fewest_elements/max(size(edges, 2), 1), min(zones%fewest_elements, fewest_in_zone))
       do i = 1, size(edges, 2)
          if (.not. any(owner == i)) cycle
          patch%arc = pack(arc, owner == i)
@@ -99,7 +101,7 @@ contains
          patch%contact = zone_type(edge=edges(:, i), rooted=.not. sharp(:, i), rest=table_type())
          patch%counted = i > size(zones%contact, 2)
          call fit_patch(patch, zones)
-         call add_elements(patch, min(longest, (patch%contact%edge(2) - patch%contact%edge(1))/zones%fewest_elements), elements)
+         call add_elements(patch, min(longest, (patch%contact%edge(2) - patch%contact%edge(1))/fewest), elements)
       end do
    end subroutine find_traction_elements
 
@@ -426,10 +428,21 @@ contains
 
       roots = 1.0_wp
       associate (length => max(self%edge(2) - self%edge(1), tiny(1.0_wp)))
-         if (self%rooted(1)) roots = roots*(max(x - self%edge(1), 0.0_wp)/length)**self%power(1)
-         if (self%rooted(2)) roots = roots*(max(self%edge(2) - x, 0.0_wp)/length)**self%power(2)
+         if (self%rooted(1)) roots = roots*root(max(x - self%edge(1), 0.0_wp)/length, self%power(1))
+         if (self%rooted(2)) roots = roots*root(max(self%edge(2) - x, 0.0_wp)/length, self%power(2))
       end associate
    end function roots
+
+   !> A power, faster for 1/2, that of most edges.
+   elemental real(wp) function root(x, power)
+      real(wp), intent(in) :: x, power
+
+      if (abs(power - 0.5_wp) > 0.0_wp) then
+         root = x**power
+      else
+         root = sqrt(x)
+      end if
+   end function root
 
    !> Their means over an interval of a `width` about x, neglecting that one root may vary where the other one does.
    elemental real(wp) function mean_roots(self, x, width)
