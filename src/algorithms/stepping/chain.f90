@@ -43,8 +43,9 @@ module mfv_chain
       logical :: found = .false., exceeded = .false.
       !> Whether contact begins in the interval, and whether the nodes that hold from its start are known.
       logical :: begins = .false., fronts = .false.
-      !> Nodes that hold from the start of the last increment, if known, shape (nodes).
+      !> Nodes that hold from the start of the last increment, if known, shape (nodes); whether others stick at the end of any.
       logical, allocatable :: held(:)
+      logical :: sticks_anew = .false.
       !> Linear solves, and changes of status that event stepping would make one by one.
       integer :: solves = 0, changes = 0
       !> Estimated errors of the final tractions, and their part where contact begins, force/length^2; of the dissipation, force;
@@ -94,6 +95,7 @@ contains
             call guess_as_before(path, interval, i, increments, chain%after(i), known)
          call find_statuses_on_mesh(path, interval, reached(chain, i), chain%after(i), chain%found, chain%exceeded, held)
          if (.not. chain%found) exit
+         if (chain%fronts) chain%sticks_anew = chain%sticks_anew .or. any(path%state%status == node_stick .and. .not. held)
          chain%changes = chain%changes + count_changes(status, path%state%status)
          chain%before(i) = path%state
          call add_node_wise_work(path, chain, i, path%state, chain%after(i))
@@ -350,7 +352,8 @@ contains
       path%state = present_state
    end subroutine find_rates_after
 
-   !> Errors of the tractions where nodes have closed since the statuses `before`, or where slip zones are narrow.
+   !> Errors of the tractions where nodes have closed since the statuses `before`, or have stuck next to narrow slip zones. (Nodes that
+   !> hold throughout or slip at the end have no memory of the path.)
    subroutine find_start_error(path, before, interval, chain)
       class(contact_path_type), intent(in) :: path
       integer, intent(in) :: before(:)
@@ -359,7 +362,7 @@ contains
       logical :: grown
 
       grown = any(in_contact(path%state%status) .and. .not. in_contact(before))
-      if (.not. (grown .or. chain%fronts .and. chain%changes > 0)) return
+      if (.not. (grown .or. chain%sticks_anew)) return
       chain%start_error = error_of_edge(path%state%status, chain%begins, &
                                         grown .and. abs(interval%load(motion_approach)%rate) > 0.0_wp, &
                                         path%model%scene%friction%static%largest())*chain%traction

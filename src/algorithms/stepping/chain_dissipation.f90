@@ -134,7 +134,7 @@ contains
       type(sample_type), intent(in) :: samples(0:)
       integer, intent(in) :: changes
       real(wp), intent(out) :: work, error, motion_work(motion_count)
-      real(wp), parameter :: noise = 2.0_wp
+      real(wp), parameter :: noise = 4.0_wp
       real(wp) :: weight(values_of_three, values_of_three), straight
       integer :: i, n
 

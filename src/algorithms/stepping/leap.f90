@@ -195,18 +195,22 @@ contains
 
    !> The dissipation of a chain by its samples: by slopes, or node by node if that is exact. Its error is taken to be half the
    !> difference to the sum node by node, extrapolated at second order, but at least a sixth of that to the sum itself; twice as
-   !> much with two samples.
+   !> much with two samples; with many at least a third of the change from half as many.
    subroutine weigh_samples(path, chain)
       class(contact_path_type), intent(in) :: path
       type(chain_type), intent(inout) :: chain
-      real(wp) :: by_nodes, error, few
+      integer, parameter :: many = 8
+      real(wp) :: by_nodes, coarse, error, few
 
+      coarse = chain%by_slopes
       call dissipation_by_slopes(path%model, chain%samples, chain%changes, chain%by_slopes, error, chain%motion_work)
       by_nodes = chain%node_wise + (chain%node_wise - chain%coarse_node_wise)/3.0_wp
       chain%work = chain%by_slopes
       few = merge(2.0_wp, 1.0_wp, ubound(chain%samples, 1) == 2)
       chain%work_error = max(few*abs(chain%by_slopes - by_nodes)/2.0_wp, &
                              few*abs(chain%by_slopes - chain%node_wise)/6.0_wp, error)
+      if (ubound(chain%samples, 1) >= max(many, 2*chain%increments)) &
+         chain%work_error = max(chain%work_error, abs(chain%by_slopes - coarse)/3.0_wp)
       if (chain%node_wise_error <= chain%work_error) then
          chain%work = chain%node_wise
          chain%work_error = chain%node_wise_error
