@@ -352,8 +352,8 @@ contains
       path%state = present_state
    end subroutine find_rates_after
 
-   !> Errors of the tractions where nodes have closed since the statuses `before`, or have stuck next to narrow slip zones. (Nodes that
-   !> hold throughout or slip at the end have no memory of the path.)
+   !> Errors of the tractions where nodes have closed since the statuses `before`, or have stuck next to narrow slip zones. (Nodes
+   !> that hold throughout or slip at the end have no memory of the path.)
    subroutine find_start_error(path, before, interval, chain)
       class(contact_path_type), intent(in) :: path
       integer, intent(in) :: before(:)
