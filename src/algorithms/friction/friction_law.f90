@@ -1,7 +1,7 @@
 !> Interface of friction laws. A law is a file of its own that extends `friction_law_type` and contains all that is specific to it;
 !> the algorithms use this interface and never its name.
 !>
-!> A node holds up to a limit, by default |tau| <= mu_s p. Laws differ for nodes that slip (or creep): over an increment of the
+!> A node holds up to the limit |tau| <= mu_s p. Laws differ for nodes that slip (or creep): over an increment of the
 !> load the shear traction is on the line
 !>
 !>     tau = slope*p + stiffness*s + offset,
@@ -69,8 +69,6 @@ module mfv_friction_law
       procedure(strength_interface), deferred :: strength
       procedure :: secant
       procedure :: limit_fraction
-      procedure :: limit_varies
-      procedure :: limit
       procedure :: has_soft_limit
       procedure :: holding_status
       procedure :: over_stress
@@ -220,21 +218,6 @@ contains
 
       limit_fraction = 1.0_wp
    end function limit_fraction
-
-   !> Whether the coefficient of the limit depends on the memory of the node.
-   pure logical function limit_varies(self)
-      class(friction_law_type), intent(in) :: self
-
-      limit_varies = .false.
-   end function limit_varies
-
-   !> The coefficient of the limit up to which a node holds.
-   pure real(wp) function limit(self, point)
-      class(friction_law_type), intent(in) :: self
-      type(friction_point_type), intent(in) :: point
-
-      limit = point%static
-   end function limit
 
    !> Whether creeping nodes approach the limit smoothly, so that a node is below it at first contact.
    pure logical function has_soft_limit(self)

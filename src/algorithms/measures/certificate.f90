@@ -262,7 +262,7 @@ contains
       logical, intent(in) :: is_large
       real(wp) :: sliding, law_defect, beyond_limit, wrong_way, slipped, limit
       type(friction_point_type) :: here, there
-      logical :: explicit, varies
+      logical :: explicit
       integer :: i, status
 
       sliding = 0.0_wp
@@ -271,16 +271,10 @@ contains
       wrong_way = 0.0_wp
       explicit = model%scene%method%integration == integration_explicit .and. model%scene%method%algorithm == algorithm_mfv
       associate (law => model%scene%friction%law)
-         varies = law%limit_varies()
          do i = 1, size(after%status)
             status = after%status(i)
             if (status == node_open) cycle
-            ! Friction points are costly: make them only where something depends on them.
-            if (varies .or. motion_sign(status) /= 0) there = after%friction_point(after%fields, i, model%static_friction(i), &
-                                                                                   model%kinetic_friction(i))
-            limit = model%static_friction(i)
-            if (varies) limit = law%limit(there)
-            limit = limit*after%fields%pressure(i)
+            limit = model%static_friction(i)*after%fields%pressure(i)
             if (status == node_frictionless) limit = 0.0_wp
             beyond_limit = max(beyond_limit, abs(after%fields%shear(i)) - limit)
             slipped = after%fields%tangential(i) - after%fields%motion(motion_shift) &
@@ -297,6 +291,7 @@ contains
                law_defect = largest_or_nan(law_defect, after%fields%shear(i))
             else
                here = before%friction_point(before%fields, i, model%static_friction(i), model%kinetic_friction(i))
+               there = after%friction_point(after%fields, i, model%static_friction(i), model%kinetic_friction(i))
                law_defect = largest_or_nan(law_defect, law%defect(status, here, there, explicit))
                if (slips(status)) wrong_way = max(wrong_way, law%wrong_motion( &
                                                   slip_sign(status)*slipped, model%static_friction(i) &

@@ -99,7 +99,6 @@ module mfv_contact_path
       procedure :: point
       procedure, private :: has_memory
       procedure :: find_events
-      procedure :: friction_limits
       procedure :: can_become_unstable
       procedure :: remember_status
       procedure :: begin_stress_drop
@@ -590,22 +589,6 @@ contains
          end do
       end associate
    end subroutine find_events
-
-   !> Coefficients of the friction limit, shape (nodes).
-   pure function friction_limits(self) result(limit)
-      class(contact_path_type), intent(in) :: self
-      real(wp) :: limit(size(self%state%status))
-      integer :: i
-
-      limit = self%model%static_friction
-      if (.not. allocated(self%model%scene%friction%law)) return
-      associate (law => self%model%scene%friction%law)
-         if (.not. law%limit_varies()) return
-         do i = 1, size(limit)
-            limit(i) = law%limit(self%point(i, self%state%fields))
-         end do
-      end associate
-   end function friction_limits
 
    !> Nodes that may have no equilibrium nearby once they slip.
    pure function can_become_unstable(self) result(unstable)

@@ -217,7 +217,7 @@ contains
          repair = worst(event_close, -gap, path%model%can_touch .and. .not. in_contact(status), motion)
          if (repair%kind == event_none) repair = worst(event_open, -trial%pressure, in_contact(status), traction)
          if (repair%kind /= event_none) return
-         over_stress = abs(trial%shear) - path%friction_limits()*trial%pressure
+         over_stress = abs(trial%shear) - path%model%static_friction*trial%pressure
          repair = worst(event_slip_right, over_stress, holds(status), traction)
          if (repair%kind /= event_none) then
             if (trial%shear(repair%node) > 0.0_wp) repair%kind = event_slip_left
@@ -241,7 +241,7 @@ contains
 
       associate (law => path%model%scene%friction%law, status => path%state%status)
          if (law%sticks()) return
-         yields = law%over_stress(motion_sign(status)*slipped, law%limit_fraction()*path%friction_limits() &
+         yields = law%over_stress(motion_sign(status)*slipped, law%limit_fraction()*path%model%static_friction &
                                   *(trial%pressure - path%state%fields%pressure))
          repair = worst(event_stick, -yields, slips(status), allowed)
          where (slips(status)) slipped = 0.0_wp

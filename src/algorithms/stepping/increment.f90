@@ -109,7 +109,7 @@ contains
       real(wp) :: first
 
       call path%find_events(path%state%fields%plus(longest, increment%response%rate), events)
-      call find_violations(path%model, path%state%status, path%friction_limits(), events, path%state%fields, &
+      call find_violations(path%model, path%state%status, events, path%state%fields, &
                            increment%response%rate, max(rate_tolerance, path%system%tolerance), increment%violations)
       first = min(minval(increment%violations%step), never)
       increment%step = min(first, longest)
