@@ -13,10 +13,10 @@ module mfv_friction_dahl
    use mfv_friction_law
    use mfv_kinds, only: wp
    use mfv_node_status
-   use mfv_strings, only: list_of_words, string_type, to_text
+   use mfv_strings, only: to_text
    implicit none
    private
-   public :: dahl_law_type
+   public :: dahl_law
 
    !> Dahl's traction reaches its limit only after infinite slip; beyond this fraction it counts as at the limit.
    real(wp), parameter :: full_fraction = 1.0_wp - 1.0e-6_wp
@@ -27,14 +27,8 @@ module mfv_friction_dahl
       !> Stiffness sigma > 0 of the bristles, force/length^3 (traction over slip), and exponent gamma >= 0.
       real(wp) :: stiffness = 0.0_wp, exponent = 1.0_wp
    contains
-      procedure :: name
-      procedure :: parameters
       procedure :: set_parameter
-      procedure :: is_linear => never
-      procedure :: sticks => never
       procedure :: depends_on_end
-      procedure :: has_events
-      procedure :: limit_fraction
       procedure :: has_soft_limit
       procedure :: holding_status
       procedure :: over_stress
@@ -49,24 +43,15 @@ module mfv_friction_dahl
       procedure, private :: turning
    end type dahl_law_type
 
+   !> The law, without its parameters.
+   type(dahl_law_type), parameter :: dahl_law = &
+                                     dahl_law_type(name='dahl', needed_keys='stiffness', optional_keys='exponent', &
+                                                   is_linear=.false., sticks=.false., has_events=.true., &
+                                                   limit_fraction=full_fraction)
+
 contains
 
    !> See mfv_friction_law, as for all that follow.
-   pure function name(self)
-      class(dahl_law_type), intent(in) :: self
-      character(len=16) :: name
-
-      name = 'dahl'
-   end function name
-
-   pure subroutine parameters(self, needed, optional_ones)
-      class(dahl_law_type), intent(in) :: self
-      type(string_type), allocatable, intent(out) :: needed(:), optional_ones(:)
-
-      needed = list_of_words('stiffness')
-      optional_ones = list_of_words('exponent')
-   end subroutine parameters
-
    pure subroutine set_parameter(self, key, value)
       class(dahl_law_type), intent(inout) :: self
       character(*), intent(in) :: key
@@ -76,12 +61,6 @@ contains
       if (key == 'exponent') self%exponent = value
    end subroutine set_parameter
 
-   pure logical function never(self)
-      class(dahl_law_type), intent(in) :: self
-
-      never = .false.
-   end function never
-
    pure logical function depends_on_end(self, status, point)
       class(dahl_law_type), intent(in) :: self
       integer, intent(in) :: status
@@ -89,18 +68,6 @@ contains
 
       depends_on_end = creeps(status)
    end function depends_on_end
-
-   pure logical function has_events(self)
-      class(dahl_law_type), intent(in) :: self
-
-      has_events = .true.
-   end function has_events
-
-   pure real(wp) function limit_fraction(self)
-      class(dahl_law_type), intent(in) :: self
-
-      limit_fraction = full_fraction
-   end function limit_fraction
 
    pure logical function has_soft_limit(self)
       class(dahl_law_type), intent(in) :: self

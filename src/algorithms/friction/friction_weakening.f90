@@ -13,19 +13,15 @@ module mfv_friction_weakening
    use mfv_friction_law
    use mfv_kinds, only: wp
    use mfv_node_status
-   use mfv_strings, only: list_of_words, string_type
    implicit none
    private
-   public :: weakening_law_type
+   public :: weakening_law_type, weakening_law
 
    type, extends(dropping_law_type) :: weakening_law_type
       !> Slip over which mu decreases from its static to its kinetic value, length, > 0.
       real(wp) :: distance = huge(1.0_wp)
    contains
-      procedure :: name
-      procedure :: parameters
       procedure :: set_parameter
-      procedure :: is_linear
       procedure :: depends_on_end
       procedure :: row
       procedure :: strength
@@ -39,24 +35,15 @@ module mfv_friction_weakening
       procedure, private :: room
    end type weakening_law_type
 
+   !> The law, without its parameters.
+   type(weakening_law_type), parameter :: weakening_law = &
+                                          weakening_law_type(name='weakening', needed_keys='weakening_distance', &
+                                                             has_two_coefficients=.true., is_linear=.false., has_memory=.true., &
+                                                             has_events=.true.)
+
 contains
 
    !> See mfv_friction_law, as for all that follow.
-   pure function name(self)
-      class(weakening_law_type), intent(in) :: self
-      character(len=16) :: name
-
-      name = 'weakening'
-   end function name
-
-   pure subroutine parameters(self, needed, optional_ones)
-      class(weakening_law_type), intent(in) :: self
-      type(string_type), allocatable, intent(out) :: needed(:), optional_ones(:)
-
-      needed = list_of_words('weakening_distance')
-      allocate (optional_ones(0))
-   end subroutine parameters
-
    pure subroutine set_parameter(self, key, value)
       class(weakening_law_type), intent(inout) :: self
       character(*), intent(in) :: key
@@ -64,12 +51,6 @@ contains
 
       self%distance = value
    end subroutine set_parameter
-
-   pure logical function is_linear(self)
-      class(weakening_law_type), intent(in) :: self
-
-      is_linear = .false.
-   end function is_linear
 
    pure logical function depends_on_end(self, status, point)
       class(weakening_law_type), intent(in) :: self

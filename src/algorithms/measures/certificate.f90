@@ -295,13 +295,13 @@ contains
                law_defect = largest_or_nan(law_defect, law%defect(status, here, there, explicit))
                if (slips(status)) wrong_way = max(wrong_way, law%wrong_motion( &
                                                   slip_sign(status)*slipped, model%static_friction(i) &
-                                                  *(after%fields%pressure(i) - before%fields%pressure(i))*law%limit_fraction()))
+                                                  *(after%fields%pressure(i) - before%fields%pressure(i))*law%limit_fraction))
             end if
          end do
          call note(self, stick_slip, sliding, self%tangential)
          call note(self, slip_traction, law_defect, self%traction)
          call note(self, friction_limit, beyond_limit, self%traction)
-         call note(self, slip_direction, wrong_way, merge(self%tangential, self%traction, law%sticks()))
+         call note(self, slip_direction, wrong_way, merge(self%tangential, self%traction, law%sticks))
       end associate
    end subroutine check_friction
 

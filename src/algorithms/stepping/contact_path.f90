@@ -569,7 +569,7 @@ contains
       class(contact_path_type), intent(in) :: self
 
       has_memory = .false.
-      if (allocated(self%model%scene%friction%law)) has_memory = self%model%scene%friction%law%has_memory()
+      if (allocated(self%model%scene%friction%law)) has_memory = self%model%scene%friction%law%has_memory
    end function has_memory
 
    !> Events of the friction law in an increment with the expected end `after`, shape (most_events, nodes); not allocated for laws
@@ -582,7 +582,7 @@ contains
 
       if (.not. self%model%scene%friction%acts()) return
       associate (law => self%model%scene%friction%law)
-         if (.not. law%has_events()) return
+         if (.not. law%has_events) return
          allocate (events(most_events, size(self%state%status)))
          do i = 1, size(self%state%status)
             call law%find_events(self%state%status(i), self%point(i, self%state%fields), self%point(i, after), events(:, i))
@@ -701,7 +701,7 @@ contains
 
       status = node_stick
       if (.not. allocated(self%model%scene%friction%law)) return
-      if (self%model%scene%friction%law%sticks()) return
+      if (self%model%scene%friction%law%sticks) return
       do i = 1, size(status)
          status(i) = self%model%scene%friction%law%holding_status(merge(-1, 1, slip_rate(i) < 0.0_wp))
       end do

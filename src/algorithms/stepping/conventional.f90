@@ -167,7 +167,7 @@ contains
 
       agrees = .true.
       if (.not. path%model%tangential) return
-      if (path%model%scene%friction%law%is_linear()) return
+      if (path%model%scene%friction%law%is_linear) return
       agrees = max(maxval(abs(fields%shear - expected%shear)), maxval(abs(fields%pressure - expected%pressure))) &
                <= 0.1_wp*round_off*maxval(abs(fields%pressure))
    end function agrees
@@ -240,8 +240,8 @@ contains
       real(wp), dimension(size(slipped)) :: yields
 
       associate (law => path%model%scene%friction%law, status => path%state%status)
-         if (law%sticks()) return
-         yields = law%over_stress(motion_sign(status)*slipped, law%limit_fraction()*path%model%static_friction &
+         if (law%sticks) return
+         yields = law%over_stress(motion_sign(status)*slipped, law%limit_fraction*path%model%static_friction &
                                   *(trial%pressure - path%state%fields%pressure))
          repair = worst(event_stick, -yields, slips(status), allowed)
          where (slips(status)) slipped = 0.0_wp

@@ -54,8 +54,8 @@ contains
       if (allocated(model%scene%friction%law)) then
          ! Explicit tangents do not determine the limit at first contact; the rates of the corrector do.
          soft_limit = model%scene%friction%law%has_soft_limit() .and. model%scene%method%integration == integration_explicit
-         full = model%scene%friction%law%limit_fraction()
-         sticks = model%scene%friction%law%sticks()
+         full = model%scene%friction%law%limit_fraction
+         sticks = model%scene%friction%law%sticks
       end if
       call find_scales(rate, traction_scale, motion_scale)
       least_rate = rate_tolerance*traction_scale

@@ -90,7 +90,7 @@ contains
       depends_on_end = .false.
       if (.not. path%model%tangential) return
       associate (law => path%model%scene%friction%law)
-         if (law%is_linear()) return
+         if (law%is_linear) return
          do i = 1, size(path%state%status)
             depends_on_end = law%depends_on_end(path%state%status(i), path%point(i, path%state%fields))
             if (depends_on_end) return
@@ -134,7 +134,7 @@ contains
       integer :: attempt
 
       if (path%model%scene%method%integration == integration_explicit .and. &
-          .not. path%model%scene%friction%law%sticks()) then
+          .not. path%model%scene%friction%law%sticks) then
          call search(path, rate_tolerance, min(left, path%model%scene%method%load_step), increment)
          return
       end if

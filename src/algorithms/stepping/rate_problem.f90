@@ -37,7 +37,7 @@ contains
       found = .false.
       if (path%has_over_stress()) return
       if (path%model%scene%friction%acts()) then
-         if (.not. path%model%scene%friction%law%is_linear() .or. path%model%scene%friction%law%drops()) return
+         if (.not. path%model%scene%friction%law%is_linear .or. path%model%scene%friction%law%drops) return
       end if
       call find_undecided(path, node, sort)
       if (size(node) == 0) return
