@@ -770,7 +770,7 @@ contains
          return
       end if
       state = self%simulation%contact%state
-      if (number > 0) state = self%simulation%padded_state(number)
+      if (number > 0) state = self%simulation%padded(self%simulation%snapshots(number))
       call state_interior(self%simulation%contact%model, state, body == body_upper, interior, available)
       call expect_inside(body, available, error)
    end subroutine find_interior

@@ -80,12 +80,10 @@ module mfv_contact_path
    contains
       procedure :: copy_without_history
       procedure :: differentiate
-      procedure, private :: refresh_derivatives
       procedure :: save_to
       procedure :: restore
       procedure :: resume
       procedure :: notify
-      procedure, private :: model_as
       procedure :: reset_first_stiffness
       procedure :: begin_motion
       procedure :: begin_wear
@@ -97,7 +95,6 @@ module mfv_contact_path
       procedure :: has_over_stress
       procedure :: is_releasing
       procedure :: point
-      procedure, private :: has_memory
       procedure :: find_events
       procedure :: can_become_unstable
       procedure :: remember_status
@@ -112,7 +109,6 @@ module mfv_contact_path
       procedure :: lengthens_for
       procedure :: no_continuation
       procedure :: end_here
-      procedure, private :: begin_tangential
       procedure :: close_nearest
    end type contact_path_type
 
@@ -214,7 +210,7 @@ contains
       type(saved_path_type), intent(in) :: saved
 
       call self%history%move_nodes(saved%added - self%model%added)
-      call self%model_as(saved%added, saved%tangential, saved%moves)
+      call model_as(self, saved%added, saved%tangential, saved%moves)
       self%path_position_type = saved%position
       call self%model%set_worn(self%state%worn)
       if (allocated(self%derivatives)) then
@@ -250,7 +246,7 @@ contains
       type(path_position_type), intent(in) :: position
       integer, intent(in) :: added
 
-      call self%model_as(added, self%model%tangential, self%model%moves)
+      call model_as(self, added, self%model%tangential, self%model%moves)
       self%path_position_type = position
       call self%model%set_worn(self%state%worn)
       call self%certificate%find_applicable(self%model)
@@ -306,7 +302,7 @@ contains
       integer :: status(size(self%state%status))
 
       if (segment%friction .and. self%model%scene%friction%acts()) then
-         if (.not. self%model%tangential .or. any(self%state%status == node_frictionless)) call self%begin_tangential()
+         if (.not. self%model%tangential .or. any(self%state%status == node_frictionless)) call begin_tangential(self)
          call self%set_status(self%state%status == node_frictionless, self%holding(self%state%fields%shear))
          return
       end if
@@ -327,7 +323,7 @@ contains
       if (.not. self%model%tangential) call self%model%add_tangential()
       call self%certificate%find_applicable(self%model)
       call self%model%relative_displacements(self%state%fields, normal, self%state%fields%tangential)
-      call self%refresh_derivatives()
+      call refresh_derivatives(self)
    end subroutine begin_tangential
 
    !> Model a motion from now on; its force is the resultant of the present tractions.
@@ -523,7 +519,7 @@ contains
       if (self%model%tangential) self%state%fields%tangential = tangential
       gap = self%model%gap(self%state%fields)
       if (allocated(self%derivatives)) call self%derivatives%touch(self%model, minloc(gap, mask=self%model%can_touch, dim=1))
-      call self%refresh_derivatives()
+      call refresh_derivatives(self)
       smallest = minval(gap, mask=self%model%can_touch)
       round_off = 8*epsilon(1.0_wp)*max(maxval(abs(self%model%initial_gap)), abs(self%state%fields%motion(motion_approach)))
       touching = self%model%can_touch .and. gap - smallest <= round_off
@@ -537,7 +533,7 @@ contains
    pure logical function has_over_stress(self)
       class(contact_path_type), intent(in) :: self
 
-      has_over_stress = self%has_memory()
+      has_over_stress = has_memory(self)
       if (has_over_stress) has_over_stress = any(self%is_releasing())
    end function has_over_stress
 
@@ -548,7 +544,7 @@ contains
       integer :: i
 
       is_releasing = .false.
-      if (.not. self%has_memory()) return
+      if (.not. has_memory(self)) return
       do i = 1, size(is_releasing)
          is_releasing(i) = self%model%scene%friction%law%is_releasing(self%state%memory(:, i))
       end do
@@ -597,7 +593,7 @@ contains
       integer :: i
 
       unstable = .false.
-      if (.not. self%has_memory()) return
+      if (.not. has_memory(self)) return
       do i = 1, size(unstable)
          unstable(i) = self%model%scene%friction%law%can_become_unstable(self%state%status(i), self%point(i, self%state%fields))
       end do
@@ -665,7 +661,7 @@ contains
       integer, intent(in) :: status(:)
       integer :: i
 
-      if (self%has_memory()) then
+      if (has_memory(self)) then
          do i = 1, size(mask)
             if (mask(i)) call self%model%scene%friction%law%change_status(self%state%status(i), status(i), &
                                                                           self%point(i, self%state%fields), self%state%memory(:, i))
@@ -685,7 +681,7 @@ contains
       logical, intent(in) :: mask(:)
       integer :: i
 
-      if (.not. self%has_memory()) return
+      if (.not. has_memory(self)) return
       do i = 1, size(mask)
          if (mask(i)) call self%model%scene%friction%law%change_status(node_slip_right, self%state%status(i), &
                                                                        self%point(i, self%state%fields), self%state%memory(:, i))
@@ -784,7 +780,7 @@ contains
       real(wp), intent(in) :: dropped
       integer :: i
 
-      if (.not. self%has_memory()) return
+      if (.not. has_memory(self)) return
       do i = 1, size(self%state%status)
          call self%model%scene%friction%law%remember(self%state%status(i), self%point(i, self%state%fields), self%point(i, after), &
                                                      dropped, self%state%memory(:, i))
@@ -837,7 +833,7 @@ contains
       iteration%tries = 0
       call fill_ends(self%model, self%state%fields, extra)
       if (allocated(self%derivatives)) call self%derivatives%widen(extra)
-      call self%refresh_derivatives()
+      call refresh_derivatives(self)
    end subroutine widen
 
    !> Displacements of the `extra` new nodes at either end.

@@ -417,7 +417,7 @@ contains
       integer, intent(in) :: number
       type(contact_state_type) :: state
 
-      state = simulation%padded_state(number)
+      state = simulation%padded(simulation%snapshots(number))
       call add_state(list, simulation, state)
       call add_loads(list, simulation, state)
       call list%add('step', simulation%snapshots(number)%step, 'number of the step')
