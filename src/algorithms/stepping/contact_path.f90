@@ -4,7 +4,7 @@ module mfv_contact_path
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_certificate, only: certificate_type, new_certificate
    use mfv_contact_fields, only: contact_fields_type
-   use mfv_contact_model, only: contact_model_type, new_contact_model
+   use mfv_contact_model, only: adapt_model, contact_model_type
    use mfv_contact_state, only: contact_state_type, new_contact_state
    use mfv_contact_system
    use mfv_derivatives, only: derivatives_type, parameter_type
@@ -210,7 +210,7 @@ contains
       type(saved_path_type), intent(in) :: saved
 
       call self%history%move_nodes(saved%added - self%model%added)
-      call model_as(self, saved%added, saved%tangential, saved%moves)
+      call adapt_model(self%model, saved%added, saved%tangential, saved%moves)
       self%path_position_type = saved%position
       call self%model%set_worn(self%state%worn)
       if (allocated(self%derivatives)) then
@@ -222,23 +222,6 @@ contains
       self%history%records = min(saved%records, self%history%records)
    end subroutine restore
 
-   !> Rebuild the model, if necessary, with `added` nodes at either end and with the given problems and motions.
-   subroutine model_as(self, added, tangential, moves)
-      class(contact_path_type), intent(inout) :: self
-      integer, intent(in) :: added
-      logical, intent(in) :: tangential, moves(motion_count)
-      integer :: i
-
-      if (self%model%added == added .and. (self%model%tangential .eqv. tangential) .and. &
-          all(self%model%moves .eqv. moves)) return
-      self%model = new_contact_model(self%model%scene)
-      if (tangential .and. .not. self%model%tangential) call self%model%add_tangential()
-      do i = 1, motion_count
-         if (moves(i)) call self%model%add_motion(i)
-      end do
-      if (added > 0) call self%model%grow(added)
-   end subroutine model_as
-
    !> Continue from a position of a contact of the same scene, on a mesh with `added` more nodes at either end. The linear solver
    !> starts without history.
    subroutine resume(self, position, added)
@@ -246,7 +229,7 @@ contains
       type(path_position_type), intent(in) :: position
       integer, intent(in) :: added
 
-      call model_as(self, added, self%model%tangential, self%model%moves)
+      call adapt_model(self%model, added, (self%model%tangential), (self%model%moves))
       self%path_position_type = position
       call self%model%set_worn(self%state%worn)
       call self%certificate%find_applicable(self%model)
@@ -332,7 +315,7 @@ contains
       integer, intent(in) :: motion
 
       if (self%model%moves(motion)) return
-      call self%model%add_motion(motion)
+      self%model%moves(motion) = .true.
       call self%certificate%find_applicable(self%model)
       associate (fields => self%state%fields)
          fields%force(motion) = self%model%resultant(motion, fields%pressure, fields%shear)
