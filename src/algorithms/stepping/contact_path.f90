@@ -448,8 +448,8 @@ contains
       none = max(nothing, tolerance_factor*self%system%tolerance)
       constraints%load(motion) = load_type(control_displacement, self%state%fields%motion(motion), 0.0_wp)
       arm = self%model%unit_of_arm(motion)
-      negligible = none*self%certificate%force_scale()*arm
-      pressed = self%state%fields%force(motion_approach) > none*self%certificate%force_scale()
+      negligible = none*self%certificate%force_scale(motion_approach)*arm
+      pressed = self%state%fields%force(motion_approach) > none*self%certificate%force_scale(motion_approach)
       if (.not. any(slips(self%state%status))) then
          if (abs(wanted) > max(balanced*self%state%fields%force(motion_approach)*arm, negligible)) &
             call self%end_here(merge(MFV_GROSS_SLIDING, MFV_SEPARATED, pressed), &

@@ -210,7 +210,7 @@ contains
       real(wp) :: traction, motion
 
       associate (status => path%state%status)
-         traction = round_off*max(maxval(abs(trial%pressure)), maxval(abs(trial%shear)), path%certificate%traction_scale())
+         traction = round_off*max(maxval(abs(trial%pressure)), maxval(abs(trial%shear)), path%certificate%traction_scale)
          motion = round_off*max(maxval(abs(trial%normal)), maxval(abs(trial%tangential)), &
                                 abs(trial%motion(motion_approach)), abs(trial%motion(motion_shift)))
          gap = path%model%gap(trial)

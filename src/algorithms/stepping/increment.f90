@@ -249,7 +249,7 @@ contains
       real(wp), intent(in) :: elsewhere
       real(wp) :: scale
 
-      scale = max(path%certificate%traction_scale(), maxval(abs(other%pressure)), elsewhere)
+      scale = max(path%certificate%traction_scale, maxval(abs(other%pressure)), elsewhere)
       difference = max(maxval(abs(one%shear - other%shear)), maxval(abs(one%pressure - other%pressure)))
       if (scale > 0.0_wp) difference = difference/scale
    end function difference

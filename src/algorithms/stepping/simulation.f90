@@ -532,7 +532,7 @@ contains
       real(wp) :: scale
 
       change_since = 0.0_wp
-      scale = self%contact%certificate%traction_scale()
+      scale = self%contact%certificate%traction_scale
       associate (now => self%contact%state%fields, then => before%fields)
          if (scale > 0.0_wp) change_since = max(maxval(abs(now%pressure - then%pressure)), &
                                                 maxval(abs(now%shear - then%shear)))/scale
@@ -636,7 +636,7 @@ contains
       integer :: i
       real(wp) :: force(motion_count)
 
-      force = self%contact%certificate%force_scale()*self%contact%model%unit_of_arm([(i, i=1, motion_count)])
+      force = self%contact%certificate%force_scale(motion_approach)*self%contact%model%unit_of_arm([(i, i=1, motion_count)])
       associate (segment => self%leg%segment, fields => self%contact%state%fields)
          segment%load = load_towards(start_of(fields%force, fields%motion, targets), targets, force)
          segment%friction = step%friction
