@@ -31,10 +31,10 @@ module mfv_simulation
    public :: states_reversals, states_steps, states_none, states_last_cycle
    public :: mark_loading, mark_reversal, mark_return, mark_cycle_start, mark_count
 
-   !> Records of the load history: one for every event, one for every step end, none.
+   !> Records of the load history, in the order of the key &output history: one for every event, one for every step end, none.
    integer, parameter :: history_events = 1, history_steps = 2, history_none = 3
-   !> Snapshots: at the ends of steps and at every turning point of a step with cycles; of steps alone; none; or at the ends of
-   !> steps and the turning points of the last cycle of a step.
+   !> Snapshots, in the order of the key &output states: at the ends of steps and at every turning point of a step with cycles; of
+   !> steps alone; none; or at the ends of steps and the turning points of the last cycle of a step.
    integer, parameter :: states_reversals = 1, states_steps = 2, states_none = 3, states_last_cycle = 4
 
    !> States stored for the last step with cycles: the start of the step, the reversal of its last complete cycle, the end of that

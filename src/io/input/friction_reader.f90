@@ -8,7 +8,7 @@ module mfv_friction_reader
    use mfv_kinds, only: wp
    use mfv_profile_file, only: read_table
    use mfv_scene, only: scene_type
-   use mfv_wear, only: wear_archard, wear_work
+   use mfv_wear, only: wear_archard
    use mfv_strings, only: has_word, list_of_words, string_type, to_text
    implicit none
    private
@@ -162,7 +162,7 @@ contains
       if (count_groups(reader, 'wear') == 0) return
       call reader%need('wear', 1, 'coefficient', error)
       if (allocated(error)) return
-      scene%wear%law = reader%constant('wear', 1, 'law', [wear_archard, wear_work])
+      scene%wear%law = reader%choice('wear', 1, 'law')
       scene%wear%coefficient = reader%real_value('wear', 1, 'coefficient')
       scene%wear%tolerance = reader%real_value('wear', 1, 'tolerance')
       scene%wear%block = reader%integer_value('wear', 1, 'block')
