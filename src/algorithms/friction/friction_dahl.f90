@@ -39,8 +39,6 @@ module mfv_friction_dahl
       procedure :: defect
       procedure :: wrong_motion
       procedure :: explain_failure
-      procedure, private :: creeping_row
-      procedure, private :: turning
    end type dahl_law_type
 
    !> The law, without its parameters.
@@ -100,11 +98,11 @@ contains
       integer, intent(in) :: status
       type(friction_point_type), intent(in) :: here, there
       type(friction_event_type), intent(out) :: events(most_events)
-      real(wp) :: turning
+      real(wp) :: change
 
       if (.not. creeps(status)) return
-      turning = max(self%turning(here), self%turning(there))
-      if (turning > 0.0_wp) events(1) = friction_event_type(event_reverse, by_motion=turning, tolerance_factor=secant_tolerance)
+      change = max(turning(self, here), turning(self, there))
+      if (change > 0.0_wp) events(1) = friction_event_type(event_reverse, by_motion=change, tolerance_factor=secant_tolerance)
    end subroutine find_events
 
    !> Difference of the stiffness of a creeping node between the two directions, force/length^3.
@@ -136,7 +134,7 @@ contains
          row = self%row(status, before, after)
       end if
       defect = abs(after%shear - row%slope*after%pressure - row%stiffness*after%slip - row%offset) &
-               + max(self%turning(before), self%turning(after))*max(-motion_sign(status)*(after%slip - before%slip), 0.0_wp)
+               + max(turning(self, before), turning(self, after))*max(-motion_sign(status)*(after%slip - before%slip), 0.0_wp)
    end function defect
 
    pure real(wp) function wrong_motion(self, moved, growth)
@@ -168,7 +166,7 @@ contains
       type(friction_row_type) :: row
 
       if (creeps(status)) then
-         row = self%creeping_row(motion_sign(status), before, after)
+         row = creeping_row(self, motion_sign(status), before, after)
       else
          row%slope = -slip_sign(status)*before%static*full_fraction
       end if
