@@ -497,7 +497,9 @@ contains
          loads%force = f%force(:user_motions)
          loads%motion = f%motion(:user_motions)
          loads%dissipation = state%dissipation
-         call state%count_nodes(loads%contact_nodes, loads%stick_nodes, loads%slip_nodes)
+         loads%contact_nodes = state%contact_nodes()
+         loads%stick_nodes = state%stick_nodes()
+         loads%slip_nodes = state%slip_nodes()
       end associate
       loads%events = self%simulation%contact%events
       loads%linear_solves = self%simulation%contact%system%solves
@@ -770,7 +772,7 @@ contains
          return
       end if
       state = self%simulation%contact%state
-      if (number > 0) state = self%simulation%padded_state(number)
+      if (number > 0) state = self%simulation%padded(self%simulation%snapshots(number))
       call state_interior(self%simulation%contact%model, state, body == body_upper, interior, available)
       call expect_inside(body, available, error)
    end subroutine find_interior

@@ -8,7 +8,7 @@ module mfv_strings
    implicit none
    private
    public :: string_type, to_text, lower_case, find_nearest_name, from_c, copy_to_c, quoted, shortened, add_text, &
-             list_of_words, has_word
+             list_of_words, word_of, has_word
 
    !> A text of any length, for arrays of texts.
    type :: string_type
@@ -178,6 +178,17 @@ contains
          first = first + length + 1
       end do
    end function list_of_words
+
+   !> Word `number` of a list of words; padded with blanks.
+   pure function word_of(words, number) result(text)
+      character(*), intent(in) :: words
+      integer, intent(in) :: number
+      character(len=len(words)) :: text
+      type(string_type), allocatable :: list(:)
+
+      list = list_of_words(words)
+      text = list(number)%text
+   end function word_of
 
    !> Whether a word is in a list of words separated by blanks.
    pure logical function has_word(words, word)

@@ -23,7 +23,7 @@ module mfv_body
                          shape_wedge = 6, shape_power = 7, shape_profile = 8, shape_matrix = 9
    !> Names of the shapes, in the order of their numbers.
    character(*), parameter :: shape_names = 'half_plane disk hole flat_punch rounded_punch wedge power profile matrix'
-   !> Interpolation of a profile: linear by default, linear by choice, monotone cubic.
+   !> Interpolation of a profile: linear by default; linear or monotone cubic by choice, in the order of the key.
    integer, parameter :: interpolation_unset = 0, interpolation_linear = 1, interpolation_cubic = 2
 
    !> A body. Lengths by default.

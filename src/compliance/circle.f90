@@ -26,7 +26,7 @@ module mfv_circle
    private
    public :: circle_type, new_circle, kernel_exact, kernel_fourier, default_harmonics, circle_intervals
 
-   !> Evaluation of the kernels: in closed form, or as a truncated Fourier series.
+   !> Evaluation of the kernels, in the order of the key &body kernel: in closed form, or as a truncated Fourier series.
    integer, parameter :: kernel_exact = 1, kernel_fourier = 2
    !> Harmonics per interval of the circle by default (dissertation section 4.2.2.1).
    integer, parameter :: default_harmonics = 4

@@ -11,12 +11,13 @@ module mfv_compliance
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: compliance_type, coupling_full, coupling_goodman, coupling_none
+   public :: compliance_type, coupling_full, coupling_goodman, coupling_none, coupling_names
    public :: block_wp, block_wt, block_up, block_ut
 
    !> Elastic coupling of the normal and the tangential problem: full; without the effect of shear on the normal problem
    !> (Goodman 1962); none.
    integer, parameter :: coupling_full = 1, coupling_goodman = 2, coupling_none = 3
+   character(*), parameter :: coupling_names = 'full goodman none'
 
    !> The four blocks.
    integer, parameter :: block_wp = 1, block_wt = 2, block_up = 3, block_ut = 4

@@ -3,10 +3,11 @@ module mfv_material
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: material_type, new_material, kolosov_constant, shear_modulus_of, flexibilities, plane_strain, plane_stress
+   public :: material_type, new_material, kolosov_constant, shear_modulus_of, flexibilities, plane_strain, plane_stress, plane_names
 
    !> The two plane states.
    integer, parameter :: plane_strain = 1, plane_stress = 2
+   character(*), parameter :: plane_names = 'strain stress'
 
    !> An isotropic material in a plane state.
    type :: material_type

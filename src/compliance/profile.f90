@@ -10,8 +10,8 @@ module mfv_profile
    private
    public :: trace_type, profile_of_points, level_none, level_mean, level_line
 
-   !> Levelling of heights: none, by their mean, or by the least-squares line.
-   integer, parameter :: level_none = 0, level_mean = 1, level_line = 2
+   !> Levelling of heights, in the order of the key &body level: none, by their mean, or by the least-squares line.
+   integer, parameter :: level_none = 1, level_mean = 2, level_line = 3
 
    !> Settings that turn measured points into a profile.
    type :: trace_type

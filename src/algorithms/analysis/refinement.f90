@@ -101,7 +101,7 @@ contains
          if (i > simulation%snapshot_count) then
             call find_patches(simulation%contact%model, simulation%contact%state, patches)
          else
-            call find_patches(simulation%contact%model, simulation%padded_state(i), patches)
+            call find_patches(simulation%contact%model, simulation%padded(simulation%snapshots(i)), patches)
          end if
          do j = 1, size(patches)
             associate (patch => patches(j))

@@ -66,7 +66,7 @@ contains
       type(zone_edges_type) :: edges(2)
       real(wp) :: scale
 
-      scale = one%contact%certificate%traction_scale()
+      scale = one%contact%certificate%traction_scale
       associate (a => one%contact%state, b => other%contact%state)
          if (size(a%status) /= size(b%status)) then
             sensitivity%message = 'with perturbed friction the mesh grows to another length'

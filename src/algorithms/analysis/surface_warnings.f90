@@ -128,7 +128,7 @@ contains
       n = simulation%snapshot_count
       if (n == 0) return
       i = maxloc([(simulation%snapshots(i)%state%fields%force(motion_approach), i=1, n)], dim=1)
-      state = simulation%padded_state(i)
+      state = simulation%padded(simulation%snapshots(i))
       contact = contact .or. in_contact(state%status)
    end function touched
 

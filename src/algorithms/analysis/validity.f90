@@ -207,7 +207,7 @@ contains
                                minloc([(simulation%snapshots(i)%state%fields%motion(bulk), i=1, n)])]
       do i = 1, size(candidates)
          if (candidates(i) == 0 .or. candidates(i) == n) cycle
-         other = largest_below(simulation, upper, simulation%padded_state(candidates(i)))
+         other = largest_below(simulation, upper, simulation%padded(simulation%snapshots(candidates(i))))
          if (.not. other%value > largest%value) cycle
          largest = other
          where_it_is = 'in steps/'//to_text(candidates(i))

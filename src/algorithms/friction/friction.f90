@@ -2,11 +2,11 @@
 !> module lists the laws.
 module mfv_friction
    use mfv_friction_coefficient, only: friction_coefficient_type, uniform_coefficient
-   use mfv_friction_coulomb, only: coulomb_law_type
-   use mfv_friction_dahl, only: dahl_law_type
+   use mfv_friction_coulomb, only: coulomb_law
+   use mfv_friction_dahl, only: dahl_law
    use mfv_friction_law, only: friction_law_type
-   use mfv_friction_static_kinetic, only: static_kinetic_law_type
-   use mfv_friction_weakening, only: weakening_law_type
+   use mfv_friction_static_kinetic, only: static_kinetic_law
+   use mfv_friction_weakening, only: weakening_law
    use mfv_kinds, only: wp
    implicit none
    private
@@ -41,13 +41,13 @@ contains
 
       select case (name)
       case ('coulomb')
-         allocate (coulomb_law_type :: law)
+         allocate (law, source=coulomb_law)
       case ('static_kinetic')
-         allocate (static_kinetic_law_type :: law)
+         allocate (law, source=static_kinetic_law)
       case ('weakening')
-         allocate (weakening_law_type :: law)
+         allocate (law, source=weakening_law)
       case ('dahl')
-         allocate (dahl_law_type :: law)
+         allocate (law, source=dahl_law)
       end select
    end subroutine new_friction_law
 
@@ -109,7 +109,7 @@ contains
       class(friction_type), intent(inout) :: self
 
       if (.not. allocated(self%law)) return
-      if (.not. self%law%is_coulomb_if_equal()) return
+      if (.not. self%law%has_two_coefficients) return
       if (.not. self%kinetic%equals(self%static)) return
       call new_friction_law('coulomb', self%law)
    end subroutine simplify
@@ -120,7 +120,7 @@ contains
       character(len=16) :: name
 
       name = 'none'
-      if (allocated(self%law)) name = self%law%name()
+      if (allocated(self%law)) name = self%law%name
    end function name
 
    !> Whether there can be any shear traction.
@@ -135,7 +135,7 @@ contains
       class(friction_type), intent(in) :: self
 
       is_proportional = .false.
-      if (allocated(self%law)) is_proportional = self%law%is_proportional()
+      if (allocated(self%law)) is_proportional = self%law%is_proportional
    end function is_proportional
 
    !> See mfv_friction_law; true without friction.
@@ -143,7 +143,7 @@ contains
       class(friction_type), intent(in) :: self
 
       is_linear = .true.
-      if (allocated(self%law)) is_linear = self%law%is_linear()
+      if (allocated(self%law)) is_linear = self%law%is_linear
    end function is_linear
 
    !> See mfv_friction_law; true without friction.
@@ -151,7 +151,7 @@ contains
       class(friction_type), intent(in) :: self
 
       sticks = .true.
-      if (allocated(self%law)) sticks = self%law%sticks()
+      if (allocated(self%law)) sticks = self%law%sticks
    end function sticks
 
    !> See mfv_friction_law; true without friction.
@@ -159,7 +159,7 @@ contains
       class(friction_type), intent(in) :: self
 
       converges = .true.
-      if (allocated(self%law)) converges = self%law%converges()
+      if (allocated(self%law)) converges = self%law%converges
    end function converges
 
    !> Whether it is Coulomb's law with a uniform coefficient, as closed forms assume.

@@ -5,33 +5,20 @@ module mfv_friction_coulomb
    use mfv_node_status, only: slip_sign
    implicit none
    private
-   public :: coulomb_law_type
+   public :: coulomb_law
 
    type, extends(friction_law_type) :: coulomb_law_type
    contains
-      procedure :: name
-      procedure :: is_proportional
       procedure :: row
       procedure :: strength
    end type coulomb_law_type
 
+   !> The law.
+   type(coulomb_law_type), parameter :: coulomb_law = coulomb_law_type(name='coulomb', is_proportional=.true.)
+
 contains
 
-   !> See mfv_friction_law, as for all that follow.
-   pure function name(self)
-      class(coulomb_law_type), intent(in) :: self
-      character(len=16) :: name
-
-      name = 'coulomb'
-   end function name
-
-   pure logical function is_proportional(self)
-      class(coulomb_law_type), intent(in) :: self
-
-      is_proportional = .true.
-   end function is_proportional
-
-   !> tau = -mu p (slip right) or mu p (slip left).
+   !> See mfv_friction_law, as for all that follow. tau = -mu p (slip right) or mu p (slip left).
    pure function row(self, status, before, after)
       class(coulomb_law_type), intent(in) :: self
       integer, intent(in) :: status

@@ -13,10 +13,10 @@ module mfv_friction_dahl
    use mfv_friction_law
    use mfv_kinds, only: wp
    use mfv_node_status
-   use mfv_strings, only: list_of_words, string_type, to_text
+   use mfv_strings, only: to_text
    implicit none
    private
-   public :: dahl_law_type
+   public :: dahl_law
 
    !> Dahl's traction reaches its limit only after infinite slip; beyond this fraction it counts as at the limit.
    real(wp), parameter :: full_fraction = 1.0_wp - 1.0e-6_wp
@@ -27,14 +27,8 @@ module mfv_friction_dahl
       !> Stiffness sigma > 0 of the bristles, force/length^3 (traction over slip), and exponent gamma >= 0.
       real(wp) :: stiffness = 0.0_wp, exponent = 1.0_wp
    contains
-      procedure :: name
-      procedure :: parameters
       procedure :: set_parameter
-      procedure :: is_linear => never
-      procedure :: sticks => never
       procedure :: depends_on_end
-      procedure :: has_events
-      procedure :: limit_fraction
       procedure :: has_soft_limit
       procedure :: holding_status
       procedure :: over_stress
@@ -45,28 +39,17 @@ module mfv_friction_dahl
       procedure :: defect
       procedure :: wrong_motion
       procedure :: explain_failure
-      procedure, private :: creeping_row
-      procedure, private :: turning
    end type dahl_law_type
+
+   !> The law, without its parameters.
+   type(dahl_law_type), parameter :: dahl_law = &
+                                     dahl_law_type(name='dahl', needed_keys='stiffness', optional_keys='exponent', &
+                                                   is_linear=.false., sticks=.false., has_events=.true., &
+                                                   limit_fraction=full_fraction)
 
 contains
 
    !> See mfv_friction_law, as for all that follow.
-   pure function name(self)
-      class(dahl_law_type), intent(in) :: self
-      character(len=16) :: name
-
-      name = 'dahl'
-   end function name
-
-   pure subroutine parameters(self, needed, optional_ones)
-      class(dahl_law_type), intent(in) :: self
-      type(string_type), allocatable, intent(out) :: needed(:), optional_ones(:)
-
-      needed = list_of_words('stiffness')
-      optional_ones = list_of_words('exponent')
-   end subroutine parameters
-
    pure subroutine set_parameter(self, key, value)
       class(dahl_law_type), intent(inout) :: self
       character(*), intent(in) :: key
@@ -76,12 +59,6 @@ contains
       if (key == 'exponent') self%exponent = value
    end subroutine set_parameter
 
-   pure logical function never(self)
-      class(dahl_law_type), intent(in) :: self
-
-      never = .false.
-   end function never
-
    pure logical function depends_on_end(self, status, point)
       class(dahl_law_type), intent(in) :: self
       integer, intent(in) :: status
@@ -89,18 +66,6 @@ contains
 
       depends_on_end = creeps(status)
    end function depends_on_end
-
-   pure logical function has_events(self)
-      class(dahl_law_type), intent(in) :: self
-
-      has_events = .true.
-   end function has_events
-
-   pure real(wp) function limit_fraction(self)
-      class(dahl_law_type), intent(in) :: self
-
-      limit_fraction = full_fraction
-   end function limit_fraction
 
    pure logical function has_soft_limit(self)
       class(dahl_law_type), intent(in) :: self
@@ -133,11 +98,11 @@ contains
       integer, intent(in) :: status
       type(friction_point_type), intent(in) :: here, there
       type(friction_event_type), intent(out) :: events(most_events)
-      real(wp) :: turning
+      real(wp) :: change
 
       if (.not. creeps(status)) return
-      turning = max(self%turning(here), self%turning(there))
-      if (turning > 0.0_wp) events(1) = friction_event_type(event_reverse, by_motion=turning, tolerance_factor=secant_tolerance)
+      change = max(turning(self, here), turning(self, there))
+      if (change > 0.0_wp) events(1) = friction_event_type(event_reverse, by_motion=change, tolerance_factor=secant_tolerance)
    end subroutine find_events
 
    !> Difference of the stiffness of a creeping node between the two directions, force/length^3.
@@ -169,7 +134,7 @@ contains
          row = self%row(status, before, after)
       end if
       defect = abs(after%shear - row%slope*after%pressure - row%stiffness*after%slip - row%offset) &
-               + max(self%turning(before), self%turning(after))*max(-motion_sign(status)*(after%slip - before%slip), 0.0_wp)
+               + max(turning(self, before), turning(self, after))*max(-motion_sign(status)*(after%slip - before%slip), 0.0_wp)
    end function defect
 
    pure real(wp) function wrong_motion(self, moved, growth)
@@ -201,7 +166,7 @@ contains
       type(friction_row_type) :: row
 
       if (creeps(status)) then
-         row = self%creeping_row(motion_sign(status), before, after)
+         row = creeping_row(self, motion_sign(status), before, after)
       else
          row%slope = -slip_sign(status)*before%static*full_fraction
       end if

@@ -16,10 +16,6 @@ module mfv_friction_drop
 
    type, abstract, extends(friction_law_type) :: dropping_law_type
    contains
-      procedure :: has_two_coefficients => always
-      procedure :: is_coulomb_if_equal => always
-      procedure :: has_memory => always
-      procedure :: has_events => always
       procedure :: find_events => find_drop_events
       procedure :: pass_event => pass_drop_event
       procedure :: change_status
@@ -31,12 +27,6 @@ module mfv_friction_drop
    end type dropping_law_type
 
 contains
-
-   pure logical function always(self)
-      class(dropping_law_type), intent(in) :: self
-
-      always = .true.
-   end function always
 
    !> The over-stress with which a node begins to slip, force/length^2.
    pure real(wp) function first_over_stress(point)
@@ -93,7 +83,7 @@ contains
 
       begins = slips(to) .and. to /= from
       if (begins .or. .not. slips(to)) memory = 0.0_wp
-      if (begins .and. self%drops()) memory(over) = first_over_stress(point)
+      if (begins .and. self%drops) memory(over) = first_over_stress(point)
    end subroutine change_status
 
    pure subroutine remember_drop(self, status, before, after, released, memory)

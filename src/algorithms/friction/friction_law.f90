@@ -1,7 +1,7 @@
 !> Interface of friction laws. A law is a file of its own that extends `friction_law_type` and contains all that is specific to it;
 !> the algorithms use this interface and never its name.
 !>
-!> A node holds up to a limit, by default |tau| <= mu_s p. Laws differ for nodes that slip (or creep): over an increment of the
+!> A node holds up to the limit |tau| <= mu_s p. Laws differ for nodes that slip (or creep): over an increment of the
 !> load the shear traction is on the line
 !>
 !>     tau = slope*p + stiffness*s + offset,
@@ -13,7 +13,6 @@
 module mfv_friction_law
    use mfv_kinds, only: wp
    use mfv_node_status
-   use mfv_strings, only: string_type
    implicit none
    private
    public :: friction_law_type, friction_point_type, friction_row_type, friction_event_type, memory_size, most_events
@@ -48,29 +47,32 @@ module mfv_friction_law
    end type friction_event_type
 
    type, abstract :: friction_law_type
+      !> Value of the key &friction law; keys of &friction, besides the coefficients, that it requires, and those that are optional.
+      character(len=16) :: name = ''
+      character(len=32) :: needed_keys = '', optional_keys = ''
+      !> Whether it has both a static and a kinetic coefficient of friction; where these are equal, it is Coulomb's law.
+      logical :: has_two_coefficients = .false.
+      !> Whether |tau| = mu p wherever a node slips, with a single coefficient, as closed forms and large increments assume.
+      logical :: is_proportional = .false.
+      !> Whether the lines are exact over increments of any length.
+      logical :: is_linear = .true.
+      !> Whether a node below its limit does not move at all; else it creeps.
+      logical :: sticks = .true.
+      !> Whether |tau| drops when a node begins to slip: it relaxes at a fixed load, along a path of its own.
+      logical :: drops = .false.
+      !> Whether results converge with the mesh.
+      logical :: converges = .true.
+      !> Whether it has memory, and its own events.
+      logical :: has_memory = .false., has_events = .false.
+      !> Fraction of the limit at which a holding node slips.
+      real(wp) :: limit_fraction = 1.0_wp
    contains
-      !> Name in a case; its keys there.
-      procedure(name_interface), deferred :: name
-      procedure :: parameters
       procedure :: set_parameter
-      procedure :: has_two_coefficients
-      procedure :: is_coulomb_if_equal
-      !> Properties.
-      procedure :: is_proportional
-      procedure :: is_linear
-      procedure :: sticks
-      procedure :: drops
-      procedure :: converges
       procedure :: depends_on_end
-      procedure :: has_memory
-      procedure :: has_events
       !> Lines and limits.
       procedure(row_interface), deferred :: row
       procedure(strength_interface), deferred :: strength
       procedure :: secant
-      procedure :: limit_fraction
-      procedure :: limit_varies
-      procedure :: limit
       procedure :: has_soft_limit
       procedure :: holding_status
       procedure :: over_stress
@@ -90,13 +92,6 @@ module mfv_friction_law
    end type friction_law_type
 
    abstract interface
-      !> Value of the key &friction law.
-      pure function name_interface(self) result(name)
-         import :: friction_law_type
-         class(friction_law_type), intent(in) :: self
-         character(len=16) :: name
-      end function name_interface
-
       !> The line of a slipping or creeping node with this `status` over the increment from `before` to `after`; the same
       !> point twice gives the tangent.
       pure function row_interface(self, status, before, after) result(row)
@@ -117,69 +112,12 @@ module mfv_friction_law
 
 contains
 
-   !> Keys of &friction, besides the coefficients, that the law requires; and those that are optional.
-   pure subroutine parameters(self, needed, optional_ones)
-      class(friction_law_type), intent(in) :: self
-      type(string_type), allocatable, intent(out) :: needed(:), optional_ones(:)
-
-      allocate (needed(0), optional_ones(0))
-   end subroutine parameters
-
    !> Set the parameter `key`.
    pure subroutine set_parameter(self, key, value)
       class(friction_law_type), intent(inout) :: self
       character(*), intent(in) :: key
       real(wp), intent(in) :: value
    end subroutine set_parameter
-
-   !> Whether it has both a static and a kinetic coefficient of friction.
-   pure logical function has_two_coefficients(self)
-      class(friction_law_type), intent(in) :: self
-
-      has_two_coefficients = .false.
-   end function has_two_coefficients
-
-   !> Whether it is Coulomb's law where the static and the kinetic coefficient are equal.
-   pure logical function is_coulomb_if_equal(self)
-      class(friction_law_type), intent(in) :: self
-
-      is_coulomb_if_equal = .false.
-   end function is_coulomb_if_equal
-
-   !> Whether |tau| = mu p wherever a node slips, with a single coefficient, as closed forms and large increments assume.
-   pure logical function is_proportional(self)
-      class(friction_law_type), intent(in) :: self
-
-      is_proportional = .false.
-   end function is_proportional
-
-   !> Whether the lines are exact over increments of any length.
-   pure logical function is_linear(self)
-      class(friction_law_type), intent(in) :: self
-
-      is_linear = .true.
-   end function is_linear
-
-   !> Whether a node below its limit does not move at all; else it creeps.
-   pure logical function sticks(self)
-      class(friction_law_type), intent(in) :: self
-
-      sticks = .true.
-   end function sticks
-
-   !> Whether |tau| drops when a node begins to slip: it relaxes at a fixed load, along a path of its own.
-   pure logical function drops(self)
-      class(friction_law_type), intent(in) :: self
-
-      drops = .false.
-   end function drops
-
-   !> Whether results converge with the mesh.
-   pure logical function converges(self)
-      class(friction_law_type), intent(in) :: self
-
-      converges = .true.
-   end function converges
 
    !> Whether the line of a node depends on the end of the increment.
    pure logical function depends_on_end(self, status, point)
@@ -190,20 +128,6 @@ contains
       depends_on_end = .false.
    end function depends_on_end
 
-   !> Whether it has memory.
-   pure logical function has_memory(self)
-      class(friction_law_type), intent(in) :: self
-
-      has_memory = .false.
-   end function has_memory
-
-   !> Whether it has its own events.
-   pure logical function has_events(self)
-      class(friction_law_type), intent(in) :: self
-
-      has_events = .false.
-   end function has_events
-
    !> The line through both ends of an increment at whose end `after` the law is satisfied; the only line of a linear law.
    pure function secant(self, status, before, after) result(row)
       class(friction_law_type), intent(in) :: self
@@ -213,28 +137,6 @@ contains
 
       row = self%row(status, before, before)
    end function secant
-
-   !> Fraction of the limit at which a holding node slips.
-   pure real(wp) function limit_fraction(self)
-      class(friction_law_type), intent(in) :: self
-
-      limit_fraction = 1.0_wp
-   end function limit_fraction
-
-   !> Whether the coefficient of the limit depends on the memory of the node.
-   pure logical function limit_varies(self)
-      class(friction_law_type), intent(in) :: self
-
-      limit_varies = .false.
-   end function limit_varies
-
-   !> The coefficient of the limit up to which a node holds.
-   pure real(wp) function limit(self, point)
-      class(friction_law_type), intent(in) :: self
-      type(friction_point_type), intent(in) :: point
-
-      limit = point%static
-   end function limit
 
    !> Whether creeping nodes approach the limit smoothly, so that a node is below it at first contact.
    pure logical function has_soft_limit(self)

@@ -9,40 +9,23 @@ module mfv_friction_static_kinetic
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: static_kinetic_law_type
+   public :: static_kinetic_law
 
    type, extends(dropping_law_type) :: static_kinetic_law_type
    contains
-      procedure :: name
-      procedure :: drops
-      procedure :: converges
       procedure :: row
       procedure :: strength
    end type static_kinetic_law_type
 
+   !> The law.
+   type(static_kinetic_law_type), parameter :: static_kinetic_law = &
+                                               static_kinetic_law_type(name='static_kinetic', has_two_coefficients=.true., &
+                                                                       drops=.true., converges=.false., has_memory=.true., &
+                                                                       has_events=.true.)
+
 contains
 
-   !> See mfv_friction_law, as for all that follow.
-   pure function name(self)
-      class(static_kinetic_law_type), intent(in) :: self
-      character(len=16) :: name
-
-      name = 'static_kinetic'
-   end function name
-
-   pure logical function drops(self)
-      class(static_kinetic_law_type), intent(in) :: self
-
-      drops = .true.
-   end function drops
-
-   pure logical function converges(self)
-      class(static_kinetic_law_type), intent(in) :: self
-
-      converges = .false.
-   end function converges
-
-   !> |tau| = mu_k p + r.
+   !> See mfv_friction_law, as for all that follow. |tau| = mu_k p + r.
    pure function row(self, status, before, after)
       class(static_kinetic_law_type), intent(in) :: self
       integer, intent(in) :: status

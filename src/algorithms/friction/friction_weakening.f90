@@ -13,19 +13,15 @@ module mfv_friction_weakening
    use mfv_friction_law
    use mfv_kinds, only: wp
    use mfv_node_status
-   use mfv_strings, only: list_of_words, string_type
    implicit none
    private
-   public :: weakening_law_type
+   public :: weakening_law_type, weakening_law
 
    type, extends(dropping_law_type) :: weakening_law_type
       !> Slip over which mu decreases from its static to its kinetic value, length, > 0.
       real(wp) :: distance = huge(1.0_wp)
    contains
-      procedure :: name
-      procedure :: parameters
       procedure :: set_parameter
-      procedure :: is_linear
       procedure :: depends_on_end
       procedure :: row
       procedure :: strength
@@ -34,29 +30,17 @@ module mfv_friction_weakening
       procedure :: pass_event
       procedure :: remember
       procedure :: can_become_unstable
-      procedure, private :: coefficient
-      procedure, private :: slope_of_coefficient
-      procedure, private :: room
    end type weakening_law_type
+
+   !> The law, without its parameters.
+   type(weakening_law_type), parameter :: weakening_law = &
+                                          weakening_law_type(name='weakening', needed_keys='weakening_distance', &
+                                                             has_two_coefficients=.true., is_linear=.false., has_memory=.true., &
+                                                             has_events=.true.)
 
 contains
 
    !> See mfv_friction_law, as for all that follow.
-   pure function name(self)
-      class(weakening_law_type), intent(in) :: self
-      character(len=16) :: name
-
-      name = 'weakening'
-   end function name
-
-   pure subroutine parameters(self, needed, optional_ones)
-      class(weakening_law_type), intent(in) :: self
-      type(string_type), allocatable, intent(out) :: needed(:), optional_ones(:)
-
-      needed = list_of_words('weakening_distance')
-      allocate (optional_ones(0))
-   end subroutine parameters
-
    pure subroutine set_parameter(self, key, value)
       class(weakening_law_type), intent(inout) :: self
       character(*), intent(in) :: key
@@ -65,18 +49,12 @@ contains
       self%distance = value
    end subroutine set_parameter
 
-   pure logical function is_linear(self)
-      class(weakening_law_type), intent(in) :: self
-
-      is_linear = .false.
-   end function is_linear
-
    pure logical function depends_on_end(self, status, point)
       class(weakening_law_type), intent(in) :: self
       integer, intent(in) :: status
       type(friction_point_type), intent(in) :: point
 
-      depends_on_end = slips(status) .and. self%room(point) < huge(1.0_wp)
+      depends_on_end = slips(status) .and. room(self, point) < huge(1.0_wp)
    end function depends_on_end
 
    pure function row(self, status, before, after)
@@ -92,8 +70,8 @@ contains
          return
       end if
       direction = slip_sign(status)
-      fall = self%slope_of_coefficient(before)
-      row%slope = -direction*(self%coefficient(before) - fall*direction*(after%slip - before%slip))
+      fall = slope_of_coefficient(self, before)
+      row%slope = -direction*(coefficient(self, before) - fall*direction*(after%slip - before%slip))
       row%stiffness = after%pressure*fall
       row%offset = -row%stiffness*after%slip
    end function row
@@ -106,7 +84,7 @@ contains
       type(friction_row_type) :: row
 
       row = self%row(status, before, before)
-      if (.not. self%room(before) < huge(1.0_wp)) return
+      if (.not. room(self, before) < huge(1.0_wp)) return
       row%slope = row%slope + 0.5_wp*(before%static - before%kinetic)/self%distance*(after%slip - before%slip)
       row%stiffness = 0.5_wp*(before%pressure + after%pressure)*(before%static - before%kinetic)/self%distance
       row%offset = -slip_sign(status)*self%strength(before) - row%slope*before%pressure - row%stiffness*before%slip
@@ -116,7 +94,7 @@ contains
       class(weakening_law_type), intent(in) :: self
       type(friction_point_type), intent(in) :: point
 
-      strength = self%coefficient(point)*point%pressure
+      strength = coefficient(self, point)*point%pressure
       if (point%memory(over) > 0.0_wp) strength = point%kinetic*point%pressure + point%memory(over)
    end function strength
 
@@ -138,7 +116,7 @@ contains
       type(friction_point_type), intent(in) :: point
 
       fall = 0.0_wp
-      if (self%room(point) < huge(1.0_wp)) fall = (point%static - point%kinetic)/self%distance
+      if (room(self, point) < huge(1.0_wp)) fall = (point%static - point%kinetic)/self%distance
    end function slope_of_coefficient
 
    !> Remaining slip of a slipping node until its friction no longer decreases, length; huge if it does not decrease.
@@ -162,8 +140,8 @@ contains
 
       if (.not. slips(status)) return
       call find_drop_events(self, status, here, there, events)
-      if (self%room(here) < huge(1.0_wp)) &
-         events(1) = friction_event_type(event_weakened, slack=self%room(here), by_motion=-1.0_wp, is_length=.true.)
+      if (room(self, here) < huge(1.0_wp)) &
+         events(1) = friction_event_type(event_weakened, slack=room(self, here), by_motion=-1.0_wp, is_length=.true.)
       if (.not. here%memory(over) > 0.0_wp) return
       fall = (here%static - here%kinetic)/self%distance
       lawful = max(self%distance - here%memory(slipped), 0.0_wp)*fall

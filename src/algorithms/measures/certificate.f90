@@ -47,24 +47,22 @@ module mfv_certificate
       real(wp) :: residual(residual_count) = 0.0_wp
       !> Whether each kind applies to this scene.
       logical :: applies(residual_count) = .true.
-      !> Increment with the largest residual, by kind; and number of increments so far.
-      integer :: worst_increment(residual_count) = 0
+      !> Number of increments so far.
       integer :: increments = 0
       !> Number of large increments: nothing is checked between their ends.
       integer :: large_increments = 0
       !> Largest estimated errors of large increments: of the tractions relative to the largest traction so far, and of the
       !> dissipated energy relative to the dissipation of the interval.
       real(wp) :: increment_traction_error = 0.0_wp, increment_dissipation_error = 0.0_wp
-      !> Largest magnitudes so far.
-      real(wp), private :: traction = 0.0_wp, normal = 0.0_wp, tangential = 0.0_wp, energy = 0.0_wp, &
-                           force(motion_count) = 0.0_wp
+      !> Largest traction so far, force/length^2; largest force of every motion so far.
+      real(wp) :: traction_scale = 0.0_wp, force_scale(motion_count) = 0.0_wp
+      !> Largest displacements and energy so far.
+      real(wp), private :: normal = 0.0_wp, tangential = 0.0_wp, energy = 0.0_wp
       !> Work of the loads so far (energy per unit thickness, force), and the sum of its magnitudes by load and increment. In
       !> rolling, the works of tangential force and moment nearly cancel.
       real(wp) :: work = 0.0_wp, gross_work = 0.0_wp
    contains
       procedure :: largest
-      procedure :: traction_scale
-      procedure :: force_scale
       procedure :: find_applicable
       procedure :: check_increment
       procedure :: note_jump
@@ -104,37 +102,20 @@ contains
       largest = maxval(self%residual, mask=self%applies)
    end function largest
 
-   !> Largest traction so far, force/length^2.
-   pure real(wp) function traction_scale(self)
-      class(certificate_type), intent(in) :: self
-
-      traction_scale = self%traction
-   end function traction_scale
-
-   !> Largest normal force so far, force/length.
-   pure real(wp) function force_scale(self)
-      class(certificate_type), intent(in) :: self
-
-      force_scale = self%force(motion_approach)
-   end function force_scale
-
    !> Check the increment from `before` to `after`, with the statuses of `after`. `is_large`: large increment; only its end is
    !> checked.
    subroutine check_increment(self, model, before, after, is_large)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: before, after
-      logical, intent(in), optional :: is_large
-      logical :: large
+      logical, intent(in) :: is_large
 
-      large = .false.
-      if (present(is_large)) large = is_large
       self%increments = self%increments + 1
-      if (large) self%large_increments = self%large_increments + 1
+      if (is_large) self%large_increments = self%large_increments + 1
       call check_equilibrium(self, model, after%fields)
       call check_normal_contact(self, model, after)
-      if (self%applies(slip_traction)) call check_friction(self, model, before, after, large)
-      call check_energy(self, model, before%fields, after, large)
+      if (self%applies(slip_traction)) call check_friction(self, model, before, after, is_large)
+      call check_energy(self, model, before%fields, after, is_large)
       if (self%large_increments > 0) call self%find_applicable(model)
    end subroutine check_increment
 
@@ -150,7 +131,7 @@ contains
          jump = largest_or_nan(jump, after%pressure(i) - before%pressure(i))
          jump = largest_or_nan(jump, after%shear(i) - before%shear(i))
       end do
-      if (self%traction > 0.0_wp) call note(self, continuity, jump, self%traction)
+      if (self%traction_scale > 0.0_wp) call note(self, continuity, jump, self%traction_scale)
    end subroutine note_jump
 
    !> Record the estimated errors of an interval of large increments: of the tractions at its end, force/length^2, and of the
@@ -159,8 +140,8 @@ contains
       class(certificate_type), intent(inout) :: self
       real(wp), intent(in) :: traction_error, work_error, work
 
-      if (self%traction > 0.0_wp) &
-         self%increment_traction_error = max(self%increment_traction_error, traction_error/self%traction)
+      if (self%traction_scale > 0.0_wp) &
+         self%increment_traction_error = max(self%increment_traction_error, traction_error/self%traction_scale)
       if (work > 0.0_wp) self%increment_dissipation_error = max(self%increment_dissipation_error, work_error/work)
    end subroutine note_large_increment
 
@@ -188,7 +169,7 @@ contains
       normal_rest = 0.0_wp
       tangential_rest = 0.0_wp
       do i = 1, size(fields%pressure)
-         self%traction = max(self%traction, abs(fields%pressure(i)), abs(fields%shear(i)))
+         self%traction_scale = max(self%traction_scale, abs(fields%pressure(i)), abs(fields%shear(i)))
          self%normal = max(self%normal, abs(by_block(i, block_wp)), abs(by_block(i, block_wt)))
          self%tangential = max(self%tangential, abs(by_block(i, block_up)), abs(by_block(i, block_ut)), abs(rigid_tangential(i)))
          pressure_force = pressure_force + model%width(i)*abs(fields%pressure(i))
@@ -198,20 +179,21 @@ contains
                                           - by_block(i, block_ut))
       end do
       self%tangential = max(self%tangential, model%friction_scale*self%normal, abs(fields%motion(motion_shift)))
-      self%force(motion_approach) = max(self%force(motion_approach), abs(fields%force(motion_approach)), pressure_force)
-      self%force(motion_shift) = max(self%force(motion_shift), model%friction_scale*self%force(motion_approach), shear_force, &
-                                     abs(fields%force(motion_shift)))
+      self%force_scale(motion_approach) = max(self%force_scale(motion_approach), abs(fields%force(motion_approach)), pressure_force)
+      self%force_scale(motion_shift) = max(self%force_scale(motion_shift), model%friction_scale*self%force_scale(motion_approach), &
+                                           shear_force, abs(fields%force(motion_shift)))
       call note(self, elasticity_normal, normal_rest, max(self%normal, maxval(abs(rigid_normal))))
       call note(self, elasticity_tangential, tangential_rest, self%tangential)
       do i = 1, motion_count
          if (motions(i)%optional) then
             if (.not. self%applies(force_balance(i))) cycle
-            self%force(i) = max(self%force(i), abs(fields%force(i)), &
-                                self%force(motion_approach)*model%unit_of_arm(i), &
-                                model%force(abs(model%normal_arm(:, i)*fields%pressure)) &
-                                + model%force(abs(model%tangential_arm(:, i)*fields%shear)))
+            self%force_scale(i) = max(self%force_scale(i), abs(fields%force(i)), &
+                                      self%force_scale(motion_approach)*model%unit_of_arm(i), &
+                                      model%force(abs(model%normal_arm(:, i)*fields%pressure)) &
+                                      + model%force(abs(model%tangential_arm(:, i)*fields%shear)))
          end if
-         call note(self, force_balance(i), abs(fields%force(i) - model%resultant(i, fields%pressure, fields%shear)), self%force(i))
+         call note(self, force_balance(i), abs(fields%force(i) - model%resultant(i, fields%pressure, fields%shear)), &
+                   self%force_scale(i))
       end do
    end subroutine check_equilibrium
 
@@ -249,8 +231,8 @@ contains
       if (.not. scale > 0.0_wp) scale = max(maxval(abs(model%initial_gap)), abs(state%fields%motion(motion_approach)))
       call note(self, contact_gap, closed_gap, scale)
       call note(self, gap_sign, open_gap, scale)
-      call note(self, open_traction, open_traction_size, self%traction)
-      call note(self, pressure_sign, negative_pressure, self%traction)
+      call note(self, open_traction, open_traction_size, self%traction_scale)
+      call note(self, pressure_sign, negative_pressure, self%traction_scale)
    end subroutine check_normal_contact
 
    !> Equalities and inequalities of slip and shear traction. Over a large increment slip counts from its own reference, which
@@ -262,7 +244,7 @@ contains
       logical, intent(in) :: is_large
       real(wp) :: sliding, law_defect, beyond_limit, wrong_way, slipped, limit
       type(friction_point_type) :: here, there
-      logical :: explicit, varies
+      logical :: explicit
       integer :: i, status
 
       sliding = 0.0_wp
@@ -271,16 +253,10 @@ contains
       wrong_way = 0.0_wp
       explicit = model%scene%method%integration == integration_explicit .and. model%scene%method%algorithm == algorithm_mfv
       associate (law => model%scene%friction%law)
-         varies = law%limit_varies()
          do i = 1, size(after%status)
             status = after%status(i)
             if (status == node_open) cycle
-            ! Friction points are costly: make them only where something depends on them.
-            if (varies .or. motion_sign(status) /= 0) there = after%friction_point(after%fields, i, model%static_friction(i), &
-                                                                                   model%kinetic_friction(i))
-            limit = model%static_friction(i)
-            if (varies) limit = law%limit(there)
-            limit = limit*after%fields%pressure(i)
+            limit = model%static_friction(i)*after%fields%pressure(i)
             if (status == node_frictionless) limit = 0.0_wp
             beyond_limit = max(beyond_limit, abs(after%fields%shear(i)) - limit)
             slipped = after%fields%tangential(i) - after%fields%motion(motion_shift) &
@@ -297,16 +273,17 @@ contains
                law_defect = largest_or_nan(law_defect, after%fields%shear(i))
             else
                here = before%friction_point(before%fields, i, model%static_friction(i), model%kinetic_friction(i))
+               there = after%friction_point(after%fields, i, model%static_friction(i), model%kinetic_friction(i))
                law_defect = largest_or_nan(law_defect, law%defect(status, here, there, explicit))
                if (slips(status)) wrong_way = max(wrong_way, law%wrong_motion( &
                                                   slip_sign(status)*slipped, model%static_friction(i) &
-                                                  *(after%fields%pressure(i) - before%fields%pressure(i))*law%limit_fraction()))
+                                                  *(after%fields%pressure(i) - before%fields%pressure(i))*law%limit_fraction))
             end if
          end do
          call note(self, stick_slip, sliding, self%tangential)
-         call note(self, slip_traction, law_defect, self%traction)
-         call note(self, friction_limit, beyond_limit, self%traction)
-         call note(self, slip_direction, wrong_way, merge(self%tangential, self%traction, law%sticks()))
+         call note(self, slip_traction, law_defect, self%traction_scale)
+         call note(self, friction_limit, beyond_limit, self%traction_scale)
+         call note(self, slip_direction, wrong_way, merge(self%tangential, self%traction_scale, law%sticks))
       end associate
    end subroutine check_friction
 
@@ -358,7 +335,6 @@ contains
       else
          self%residual(kind) = huge(1.0_wp)
       end if
-      self%worst_increment(kind) = self%increments
    end subroutine note
 
 end module mfv_certificate

@@ -158,7 +158,7 @@ contains
 
       width = 0.0_wp
       missing = 0.0_wp
-      if (.not. model%scene%friction%law%sticks() .or. any(state%status == node_frictionless)) return
+      if (.not. model%scene%friction%law%sticks .or. any(state%status == node_frictionless)) return
       first = findloc(in_contact(state%status), .true., dim=1)
       last = findloc(in_contact(state%status), .true., dim=1, back=.true.)
       if (last - first + 1 < fewest) return

@@ -22,7 +22,7 @@ module mfv_contact_model
    use mfv_scene_indenter, only: indenter_of, largest_half_width
    implicit none
    private
-   public :: contact_model_type, new_contact_model, choose_mesh, can_choose_mesh, has_touchable_node, intervals_round, &
+  public :: contact_model_type, new_contact_model, adapt_model, choose_mesh, can_choose_mesh, has_touchable_node, intervals_round, &
              needs_equal_intervals
 
    type :: contact_model_type
@@ -85,7 +85,6 @@ module mfv_contact_model
       procedure :: spare_nodes
       procedure :: grow
       procedure :: add_tangential
-      procedure :: add_motion
       procedure :: set_worn
       procedure :: begin_wear
       procedure, private :: build_compliance
@@ -220,13 +219,18 @@ contains
       call self%build_compliance(self%nodes(), self%interval())
    end subroutine add_tangential
 
-   !> Model a motion from now on.
-   subroutine add_motion(self, motion)
-      class(contact_model_type), intent(inout) :: self
-      integer, intent(in) :: motion
+   !> Extend a model to `added` nodes at either end and to the given problem and motions; rebuild it, without wear, if it has more.
+   subroutine adapt_model(model, added, tangential, moves)
+      type(contact_model_type), intent(inout) :: model
+      integer, intent(in) :: added
+      logical, intent(in) :: tangential, moves(motion_count)
 
-      self%moves(motion) = .true.
-   end subroutine add_motion
+      if (model%added > added .or. (model%tangential .and. .not. tangential) .or. any(model%moves .and. .not. moves)) &
+         model = new_contact_model(model%scene)
+      if (tangential .and. .not. model%tangential) call model%add_tangential()
+      model%moves = model%moves .or. moves
+      if (model%added < added) call model%grow(added - model%added)
+   end subroutine adapt_model
 
    !> Set the depth that is worn off, length, shape (nodes).
    subroutine set_worn(self, worn)

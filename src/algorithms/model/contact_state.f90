@@ -33,7 +33,6 @@ module mfv_contact_state
       procedure :: contact_nodes
       procedure :: stick_nodes
       procedure :: slip_nodes
-      procedure :: count_nodes
    end type contact_state_type
 
 contains
@@ -116,22 +115,6 @@ contains
 
       contact_nodes = count(in_contact(self%status))
    end function contact_nodes
-
-   !> Numbers of nodes in contact, that hold and that slip, in one pass.
-   pure subroutine count_nodes(self, contact, stick, slip)
-      class(contact_state_type), intent(in) :: self
-      integer, intent(out) :: contact, stick, slip
-      integer, parameter :: first = node_open, last = node_creep_left
-      integer :: having(first:last), i
-
-      having = 0
-      do i = 1, size(self%status)
-         having(self%status(i)) = having(self%status(i)) + 1
-      end do
-      contact = sum(having, mask=in_contact([(i, i=first, last)]))
-      stick = sum(having, mask=holds([(i, i=first, last)]))
-      slip = sum(having, mask=slips([(i, i=first, last)]))
-   end subroutine count_nodes
 
    !> Number of nodes that hold: stuck, or creeping below the friction limit.
    pure integer function stick_nodes(self)

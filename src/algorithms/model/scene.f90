@@ -14,18 +14,24 @@ module mfv_scene
    private
    public :: scene_type, mesh_request_type, step_type, method_type, control_keep, control_force, control_displacement, &
              most_cycles, algorithm_mfv, algorithm_conventional, stepping_event, stepping_nominal, stepping_leap, stepping_auto, &
-             integration_second_order, integration_explicit, solver_auto, solver_dgesv, solver_reduced, solver_fft
+             integration_second_order, integration_explicit, solver_auto, solver_dgesv, solver_reduced, solver_fft, &
+             algorithm_names, stepping_names, integration_names, solver_names
 
-   !> The Method of First Violation (dissertation section 2.3) or the conventional algorithm (2.2).
+   !> The Method of First Violation (dissertation section 2.3) or the conventional algorithm (2.2). Names here and below: values of
+   !> the keys of &solver, in the order of the numbers.
    integer, parameter :: algorithm_mfv = 1, algorithm_conventional = 2
-   !> Stepping of the Method of First Violation: from rates; from a trial load step and interpolation (2.3 to 2.5); or in large
-   !> increments without events, refined until they are accurate; or (auto) what costs least at the allowed error.
-   integer, parameter :: stepping_event = 1, stepping_nominal = 2, stepping_leap = 3, stepping_auto = 4
+   character(*), parameter :: algorithm_names = 'mfv conventional'
+   !> Stepping of the Method of First Violation: what costs least at the allowed error (auto); from rates; from a trial load step
+   !> and interpolation (2.3 to 2.5); or in large increments without events, refined until they are accurate.
+   integer, parameter :: stepping_auto = 1, stepping_event = 2, stepping_nominal = 3, stepping_leap = 4
+   character(*), parameter :: stepping_names = 'auto event nominal leap'
    !> Linear solvers: chosen by size and structure; the augmented system with LAPACK's dgesv; the reduced system with an updated
    !> factorisation; Krylov iteration with products through FFTW.
-   integer, parameter :: solver_auto = 0, solver_dgesv = 1, solver_reduced = 2, solver_fft = 3
+   integer, parameter :: solver_auto = 1, solver_dgesv = 2, solver_reduced = 3, solver_fft = 4
+   character(*), parameter :: solver_names = 'auto dgesv reduced fft'
    !> Integration of nonlinear friction laws: second order with controlled error, or explicit (appendix B).
    integer, parameter :: integration_second_order = 1, integration_explicit = 2
+   character(*), parameter :: integration_names = 'second_order explicit'
    !> Most cycles of a step.
    integer, parameter :: most_cycles = 1000000
 

@@ -5,7 +5,8 @@ module mfv_wear
    private
    public :: wear_type, wear_archard, wear_work
 
-   !> Depth of wear in proportion to pressure times slip (Archard 1953), or to the work of friction per unit of surface.
+   !> Depth of wear in proportion to pressure times slip (Archard 1953), or to the work of friction per unit of surface; in the
+   !> order of the key &wear law.
    integer, parameter :: wear_archard = 1, wear_work = 2
 
    type :: wear_type

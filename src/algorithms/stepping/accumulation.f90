@@ -38,7 +38,7 @@ contains
 
       passed = .false.
       if (.not. path%model%scene%friction%acts()) return
-      if (.not. path%model%scene%friction%law%drops() .or. path%has_over_stress()) return
+      if (.not. path%model%scene%friction%law%drops .or. path%has_over_stress()) return
       call find_increment(path, constraints, left, .false., rate_tolerance, increment)
       if (increment%singular) return
       alternates = vanish(path, increment, near)

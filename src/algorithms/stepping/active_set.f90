@@ -331,7 +331,7 @@ contains
             possible = possible .and. path%model%lifts(i) .and. path%state%contact_nodes() > 1
       end do
       if (any(holds(path%state%status)) .or. constraints%load(motion_shift)%control == control_displacement) return
-      scale = max(path%certificate%force_scale(), abs(constraints%load(motion_approach)%value))
+      scale = max(path%certificate%force_scale(motion_approach), abs(constraints%load(motion_approach)%value))
       possible = possible .and. .not. any(slips(path%state%status)) .and. &
                  max(abs(constraints%load(motion_shift)%value), abs(segment%load(motion_shift)%rate)) <= no_force*scale
       constraints%load(motion_shift) = load_type(control_displacement, path%state%fields%motion(motion_shift), 0.0_wp)
@@ -350,7 +350,7 @@ contains
       integer :: i, closed
 
       tolerance = max(round_off, path%system%tolerance)
-      traction = tolerance*max(maxval(abs(fields%pressure)), maxval(abs(fields%shear)), path%certificate%traction_scale())
+      traction = tolerance*max(maxval(abs(fields%pressure)), maxval(abs(fields%shear)), path%certificate%traction_scale)
       motion = tolerance*max(maxval(abs(fields%normal)), maxval(abs(fields%tangential)), abs(fields%motion(motion_approach)), &
                              abs(fields%motion(motion_shift)))
       gap = path%model%gap(fields)

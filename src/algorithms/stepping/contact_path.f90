@@ -4,7 +4,7 @@ module mfv_contact_path
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_certificate, only: certificate_type, new_certificate
    use mfv_contact_fields, only: contact_fields_type
-   use mfv_contact_model, only: contact_model_type, new_contact_model
+   use mfv_contact_model, only: adapt_model, contact_model_type
    use mfv_contact_state, only: contact_state_type, new_contact_state
    use mfv_contact_system
    use mfv_derivatives, only: derivatives_type, parameter_type
@@ -80,12 +80,10 @@ module mfv_contact_path
    contains
       procedure :: copy_without_history
       procedure :: differentiate
-      procedure, private :: refresh_derivatives
       procedure :: save_to
       procedure :: restore
       procedure :: resume
       procedure :: notify
-      procedure, private :: model_as
       procedure :: reset_first_stiffness
       procedure :: begin_motion
       procedure :: begin_wear
@@ -97,9 +95,7 @@ module mfv_contact_path
       procedure :: has_over_stress
       procedure :: is_releasing
       procedure :: point
-      procedure, private :: has_memory
       procedure :: find_events
-      procedure :: friction_limits
       procedure :: can_become_unstable
       procedure :: remember_status
       procedure :: begin_stress_drop
@@ -113,7 +109,6 @@ module mfv_contact_path
       procedure :: lengthens_for
       procedure :: no_continuation
       procedure :: end_here
-      procedure, private :: begin_tangential
       procedure :: close_nearest
    end type contact_path_type
 
@@ -215,7 +210,7 @@ contains
       type(saved_path_type), intent(in) :: saved
 
       call self%history%move_nodes(saved%added - self%model%added)
-      call self%model_as(saved%added, saved%tangential, saved%moves)
+      call adapt_model(self%model, saved%added, saved%tangential, saved%moves)
       self%path_position_type = saved%position
       call self%model%set_worn(self%state%worn)
       if (allocated(self%derivatives)) then
@@ -227,23 +222,6 @@ contains
       self%history%records = min(saved%records, self%history%records)
    end subroutine restore
 
-   !> Rebuild the model, if necessary, with `added` nodes at either end and with the given problems and motions.
-   subroutine model_as(self, added, tangential, moves)
-      class(contact_path_type), intent(inout) :: self
-      integer, intent(in) :: added
-      logical, intent(in) :: tangential, moves(motion_count)
-      integer :: i
-
-      if (self%model%added == added .and. (self%model%tangential .eqv. tangential) .and. &
-          all(self%model%moves .eqv. moves)) return
-      self%model = new_contact_model(self%model%scene)
-      if (tangential .and. .not. self%model%tangential) call self%model%add_tangential()
-      do i = 1, motion_count
-         if (moves(i)) call self%model%add_motion(i)
-      end do
-      if (added > 0) call self%model%grow(added)
-   end subroutine model_as
-
    !> Continue from a position of a contact of the same scene, on a mesh with `added` more nodes at either end. The linear solver
    !> starts without history.
    subroutine resume(self, position, added)
@@ -251,7 +229,7 @@ contains
       type(path_position_type), intent(in) :: position
       integer, intent(in) :: added
 
-      call self%model_as(added, self%model%tangential, self%model%moves)
+      call adapt_model(self%model, added, (self%model%tangential), (self%model%moves))
       self%path_position_type = position
       call self%model%set_worn(self%state%worn)
       call self%certificate%find_applicable(self%model)
@@ -307,7 +285,7 @@ contains
       integer :: status(size(self%state%status))
 
       if (segment%friction .and. self%model%scene%friction%acts()) then
-         if (.not. self%model%tangential .or. any(self%state%status == node_frictionless)) call self%begin_tangential()
+         if (.not. self%model%tangential .or. any(self%state%status == node_frictionless)) call begin_tangential(self)
          call self%set_status(self%state%status == node_frictionless, self%holding(self%state%fields%shear))
          return
       end if
@@ -328,7 +306,7 @@ contains
       if (.not. self%model%tangential) call self%model%add_tangential()
       call self%certificate%find_applicable(self%model)
       call self%model%relative_displacements(self%state%fields, normal, self%state%fields%tangential)
-      call self%refresh_derivatives()
+      call refresh_derivatives(self)
    end subroutine begin_tangential
 
    !> Model a motion from now on; its force is the resultant of the present tractions.
@@ -337,7 +315,7 @@ contains
       integer, intent(in) :: motion
 
       if (self%model%moves(motion)) return
-      call self%model%add_motion(motion)
+      self%model%moves(motion) = .true.
       call self%certificate%find_applicable(self%model)
       associate (fields => self%state%fields)
          fields%force(motion) = self%model%resultant(motion, fields%pressure, fields%shear)
@@ -470,8 +448,8 @@ contains
       none = max(nothing, tolerance_factor*self%system%tolerance)
       constraints%load(motion) = load_type(control_displacement, self%state%fields%motion(motion), 0.0_wp)
       arm = self%model%unit_of_arm(motion)
-      negligible = none*self%certificate%force_scale()*arm
-      pressed = self%state%fields%force(motion_approach) > none*self%certificate%force_scale()
+      negligible = none*self%certificate%force_scale(motion_approach)*arm
+      pressed = self%state%fields%force(motion_approach) > none*self%certificate%force_scale(motion_approach)
       if (.not. any(slips(self%state%status))) then
          if (abs(wanted) > max(balanced*self%state%fields%force(motion_approach)*arm, negligible)) &
             call self%end_here(merge(MFV_GROSS_SLIDING, MFV_SEPARATED, pressed), &
@@ -524,7 +502,7 @@ contains
       if (self%model%tangential) self%state%fields%tangential = tangential
       gap = self%model%gap(self%state%fields)
       if (allocated(self%derivatives)) call self%derivatives%touch(self%model, minloc(gap, mask=self%model%can_touch, dim=1))
-      call self%refresh_derivatives()
+      call refresh_derivatives(self)
       smallest = minval(gap, mask=self%model%can_touch)
       round_off = 8*epsilon(1.0_wp)*max(maxval(abs(self%model%initial_gap)), abs(self%state%fields%motion(motion_approach)))
       touching = self%model%can_touch .and. gap - smallest <= round_off
@@ -538,7 +516,7 @@ contains
    pure logical function has_over_stress(self)
       class(contact_path_type), intent(in) :: self
 
-      has_over_stress = self%has_memory()
+      has_over_stress = has_memory(self)
       if (has_over_stress) has_over_stress = any(self%is_releasing())
    end function has_over_stress
 
@@ -549,7 +527,7 @@ contains
       integer :: i
 
       is_releasing = .false.
-      if (.not. self%has_memory()) return
+      if (.not. has_memory(self)) return
       do i = 1, size(is_releasing)
          is_releasing(i) = self%model%scene%friction%law%is_releasing(self%state%memory(:, i))
       end do
@@ -570,7 +548,7 @@ contains
       class(contact_path_type), intent(in) :: self
 
       has_memory = .false.
-      if (allocated(self%model%scene%friction%law)) has_memory = self%model%scene%friction%law%has_memory()
+      if (allocated(self%model%scene%friction%law)) has_memory = self%model%scene%friction%law%has_memory
    end function has_memory
 
    !> Events of the friction law in an increment with the expected end `after`, shape (most_events, nodes); not allocated for laws
@@ -583,29 +561,13 @@ contains
 
       if (.not. self%model%scene%friction%acts()) return
       associate (law => self%model%scene%friction%law)
-         if (.not. law%has_events()) return
+         if (.not. law%has_events) return
          allocate (events(most_events, size(self%state%status)))
          do i = 1, size(self%state%status)
             call law%find_events(self%state%status(i), self%point(i, self%state%fields), self%point(i, after), events(:, i))
          end do
       end associate
    end subroutine find_events
-
-   !> Coefficients of the friction limit, shape (nodes).
-   pure function friction_limits(self) result(limit)
-      class(contact_path_type), intent(in) :: self
-      real(wp) :: limit(size(self%state%status))
-      integer :: i
-
-      limit = self%model%static_friction
-      if (.not. allocated(self%model%scene%friction%law)) return
-      associate (law => self%model%scene%friction%law)
-         if (.not. law%limit_varies()) return
-         do i = 1, size(limit)
-            limit(i) = law%limit(self%point(i, self%state%fields))
-         end do
-      end associate
-   end function friction_limits
 
    !> Nodes that may have no equilibrium nearby once they slip.
    pure function can_become_unstable(self) result(unstable)
@@ -614,7 +576,7 @@ contains
       integer :: i
 
       unstable = .false.
-      if (.not. self%has_memory()) return
+      if (.not. has_memory(self)) return
       do i = 1, size(unstable)
          unstable(i) = self%model%scene%friction%law%can_become_unstable(self%state%status(i), self%point(i, self%state%fields))
       end do
@@ -682,7 +644,7 @@ contains
       integer, intent(in) :: status(:)
       integer :: i
 
-      if (self%has_memory()) then
+      if (has_memory(self)) then
          do i = 1, size(mask)
             if (mask(i)) call self%model%scene%friction%law%change_status(self%state%status(i), status(i), &
                                                                           self%point(i, self%state%fields), self%state%memory(:, i))
@@ -702,7 +664,7 @@ contains
       logical, intent(in) :: mask(:)
       integer :: i
 
-      if (.not. self%has_memory()) return
+      if (.not. has_memory(self)) return
       do i = 1, size(mask)
          if (mask(i)) call self%model%scene%friction%law%change_status(node_slip_right, self%state%status(i), &
                                                                        self%point(i, self%state%fields), self%state%memory(:, i))
@@ -718,7 +680,7 @@ contains
 
       status = node_stick
       if (.not. allocated(self%model%scene%friction%law)) return
-      if (self%model%scene%friction%law%sticks()) return
+      if (self%model%scene%friction%law%sticks) return
       do i = 1, size(status)
          status(i) = self%model%scene%friction%law%holding_status(merge(-1, 1, slip_rate(i) < 0.0_wp))
       end do
@@ -801,7 +763,7 @@ contains
       real(wp), intent(in) :: dropped
       integer :: i
 
-      if (.not. self%has_memory()) return
+      if (.not. has_memory(self)) return
       do i = 1, size(self%state%status)
          call self%model%scene%friction%law%remember(self%state%status(i), self%point(i, self%state%fields), self%point(i, after), &
                                                      dropped, self%state%memory(:, i))
@@ -854,7 +816,7 @@ contains
       iteration%tries = 0
       call fill_ends(self%model, self%state%fields, extra)
       if (allocated(self%derivatives)) call self%derivatives%widen(extra)
-      call self%refresh_derivatives()
+      call refresh_derivatives(self)
    end subroutine widen
 
    !> Displacements of the `extra` new nodes at either end.

@@ -167,7 +167,7 @@ contains
 
       agrees = .true.
       if (.not. path%model%tangential) return
-      if (path%model%scene%friction%law%is_linear()) return
+      if (path%model%scene%friction%law%is_linear) return
       agrees = max(maxval(abs(fields%shear - expected%shear)), maxval(abs(fields%pressure - expected%pressure))) &
                <= 0.1_wp*round_off*maxval(abs(fields%pressure))
    end function agrees
@@ -210,14 +210,14 @@ contains
       real(wp) :: traction, motion
 
       associate (status => path%state%status)
-         traction = round_off*max(maxval(abs(trial%pressure)), maxval(abs(trial%shear)), path%certificate%traction_scale())
+         traction = round_off*max(maxval(abs(trial%pressure)), maxval(abs(trial%shear)), path%certificate%traction_scale)
          motion = round_off*max(maxval(abs(trial%normal)), maxval(abs(trial%tangential)), &
                                 abs(trial%motion(motion_approach)), abs(trial%motion(motion_shift)))
          gap = path%model%gap(trial)
          repair = worst(event_close, -gap, path%model%can_touch .and. .not. in_contact(status), motion)
          if (repair%kind == event_none) repair = worst(event_open, -trial%pressure, in_contact(status), traction)
          if (repair%kind /= event_none) return
-         over_stress = abs(trial%shear) - path%friction_limits()*trial%pressure
+         over_stress = abs(trial%shear) - path%model%static_friction*trial%pressure
          repair = worst(event_slip_right, over_stress, holds(status), traction)
          if (repair%kind /= event_none) then
             if (trial%shear(repair%node) > 0.0_wp) repair%kind = event_slip_left
@@ -240,8 +240,8 @@ contains
       real(wp), dimension(size(slipped)) :: yields
 
       associate (law => path%model%scene%friction%law, status => path%state%status)
-         if (law%sticks()) return
-         yields = law%over_stress(motion_sign(status)*slipped, law%limit_fraction()*path%friction_limits() &
+         if (law%sticks) return
+         yields = law%over_stress(motion_sign(status)*slipped, law%limit_fraction*path%model%static_friction &
                                   *(trial%pressure - path%state%fields%pressure))
          repair = worst(event_stick, -yields, slips(status), allowed)
          where (slips(status)) slipped = 0.0_wp

@@ -11,7 +11,7 @@
 !> at given tractions and motions are differences of fourth order between models with other values of the key.
 module mfv_derivatives
    use mfv_contact_fields, only: contact_fields_type, new_contact_fields
-   use mfv_contact_model, only: contact_model_type, new_contact_model
+   use mfv_contact_model, only: adapt_model, contact_model_type
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_count, motion_approach, motion_shift, control_force, control_keep
    use mfv_strings, only: string_type
@@ -29,8 +29,6 @@ module mfv_derivatives
       !> of the differences of the pairs times `weight`, shape (pairs). Not allocated for a target.
       type(contact_model_type), allocatable :: model(:, :)
       real(wp), allocatable :: weight(:)
-   contains
-      procedure :: follow
    end type parameter_type
 
    !> Derivatives of a state with respect to all parameters, shape (..., parameters).
@@ -72,28 +70,6 @@ module mfv_derivatives
 
 contains
 
-   !> Rebuild or extend the models of a key to the mesh and the problem of `model`.
-   subroutine follow(self, model)
-      class(parameter_type), intent(inout) :: self
-      type(contact_model_type), intent(in) :: model
-      integer :: i, j, pair
-
-      if (.not. allocated(self%model)) return
-      do pair = 1, size(self%weight)
-         do i = 1, 2
-            associate (varied => self%model(i, pair))
-               if (varied%added > model%added .or. (varied%tangential .and. .not. model%tangential)) &
-                  varied = new_contact_model(varied%scene)
-               if (model%tangential .and. .not. varied%tangential) call varied%add_tangential()
-               do j = 1, motion_count
-                  if (model%moves(j)) call varied%add_motion(j)
-               end do
-               if (varied%added < model%added) call varied%grow(model%added - varied%added)
-            end associate
-         end do
-      end do
-   end subroutine follow
-
    !> Explicit derivatives with respect to a parameter at the tractions and motions of `fields`.
    subroutine explicit_derivatives(parameter, model, fields, derivatives)
       type(parameter_type), intent(inout) :: parameter
@@ -106,9 +82,10 @@ contains
       n = model%nodes()
       allocate (derivatives%gap(n), derivatives%slip(n), derivatives%friction(n), derivatives%width(n), source=0.0_wp)
       if (.not. allocated(parameter%model)) return
-      call parameter%follow(model)
       do pair = 1, size(parameter%weight)
          associate (less => parameter%model(1, pair), more => parameter%model(2, pair), weight => parameter%weight(pair))
+            call adapt_model(less, model%added, model%tangential, model%moves)
+            call adapt_model(more, model%added, model%tangential, model%moves)
             call less%relative_displacements(fields, normal(:, 1), tangential(:, 1))
             call more%relative_displacements(fields, normal(:, 2), tangential(:, 2))
             derivatives%gap = derivatives%gap + weight*((more%initial_gap - less%initial_gap) + (normal(:, 2) - normal(:, 1)))

@@ -25,14 +25,12 @@ module mfv_event_search
 
 contains
 
-   !> All violations at the given rates. `status`: shape (nodes). `limit`: coefficients of the friction limit, shape (nodes).
-   !> `events`: those of the friction law, shape (most_events, nodes); not allocated if there are none. `state`, `rate`: present
-   !> fields and their rates per unit of the load parameter. Rates below the fraction `rate_tolerance` of the largest of their type
-   !> count as zero. `violations`: its storage is reused.
-   subroutine find_violations(model, status, limit, events, state, rate, rate_tolerance, violations)
+   !> All violations at the given rates. `status`: shape (nodes). `events`: those of the friction law, shape (most_events, nodes);
+   !> not allocated if there are none. `state`, `rate`: present fields and their rates per unit of the load parameter. Rates below
+   !> the fraction `rate_tolerance` of the largest of their type count as zero. `violations`: its storage is reused.
+   subroutine find_violations(model, status, events, state, rate, rate_tolerance, violations)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: status(:)
-      real(wp), intent(in) :: limit(:)
       type(friction_event_type), allocatable, intent(in) :: events(:, :)
       type(contact_fields_type), intent(in) :: state, rate
       real(wp), intent(in) :: rate_tolerance
@@ -56,8 +54,8 @@ contains
       if (allocated(model%scene%friction%law)) then
          ! Explicit tangents do not determine the limit at first contact; the rates of the corrector do.
          soft_limit = model%scene%friction%law%has_soft_limit() .and. model%scene%method%integration == integration_explicit
-         full = model%scene%friction%law%limit_fraction()
-         sticks = model%scene%friction%law%sticks()
+         full = model%scene%friction%law%limit_fraction
+         sticks = model%scene%friction%law%sticks
       end if
       call find_scales(rate, traction_scale, motion_scale)
       least_rate = rate_tolerance*traction_scale
@@ -71,7 +69,7 @@ contains
                              motion_scale)
             cycle
          case (node_stick, node_creep_right, node_creep_left)
-            mu = full*limit(i)
+            mu = full*model%static_friction(i)
             if (mu*rate%pressure(i) - abs(rate%shear(i)) < 0.0_wp) then
                if (.not. (soft_limit .and. .not. state%pressure(i) > 0.0_wp .and. rate%pressure(i) > least_rate)) then
                   call consider(event_slip_right, mu*state%pressure(i) + state%shear(i), &
@@ -87,7 +85,7 @@ contains
             else
                call consider(event_stick, 0.0_wp, &
                              model%scene%friction%law%over_stress(slip_sign(status(i))*slip_rate, &
-                                                                  full*limit(i)*rate%pressure(i)), &
+                                                                  full*model%static_friction(i)*rate%pressure(i)), &
                              secant_tolerance*traction_scale)
             end if
          end select

@@ -173,7 +173,7 @@ contains
       real(wp) :: negligible
 
       last_step = shortest_step(path)
-      negligible = max(round_off, path%system%tolerance)*path%certificate%force_scale()
+      negligible = max(round_off, path%system%tolerance)*path%certificate%force_scale(motion_approach)
       associate (normal => segment%load(motion_approach))
          if (normal%control /= control_force .or. .not. normal%rate < 0.0_wp) return
          if (abs(normal%value + normal%rate) <= negligible) last_step = max(last_step, min(negligible/(-normal%rate), largest))
@@ -214,7 +214,7 @@ contains
       integer :: i
 
       associate (before => path%state%fields, response => increment%response)
-         scale = path%certificate%traction_scale()
+         scale = path%certificate%traction_scale
          jump = 0.0_wp
          do i = 1, size(before%pressure)
             scale = max(scale, abs(response%rate%pressure(i)), abs(response%rate%shear(i)))

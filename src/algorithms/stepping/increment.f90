@@ -90,7 +90,7 @@ contains
       depends_on_end = .false.
       if (.not. path%model%tangential) return
       associate (law => path%model%scene%friction%law)
-         if (law%is_linear()) return
+         if (law%is_linear) return
          do i = 1, size(path%state%status)
             depends_on_end = law%depends_on_end(path%state%status(i), path%point(i, path%state%fields))
             if (depends_on_end) return
@@ -109,7 +109,7 @@ contains
       real(wp) :: first
 
       call path%find_events(path%state%fields%plus(longest, increment%response%rate), events)
-      call find_violations(path%model, path%state%status, path%friction_limits(), events, path%state%fields, &
+      call find_violations(path%model, path%state%status, events, path%state%fields, &
                            increment%response%rate, max(rate_tolerance, path%system%tolerance), increment%violations)
       first = min(minval(increment%violations%step), never)
       increment%step = min(first, longest)
@@ -134,7 +134,7 @@ contains
       integer :: attempt
 
       if (path%model%scene%method%integration == integration_explicit .and. &
-          .not. path%model%scene%friction%law%sticks()) then
+          .not. path%model%scene%friction%law%sticks) then
          call search(path, rate_tolerance, min(left, path%model%scene%method%load_step), increment)
          return
       end if
@@ -249,7 +249,7 @@ contains
       real(wp), intent(in) :: elsewhere
       real(wp) :: scale
 
-      scale = max(path%certificate%traction_scale(), maxval(abs(other%pressure)), elsewhere)
+      scale = max(path%certificate%traction_scale, maxval(abs(other%pressure)), elsewhere)
       difference = max(maxval(abs(one%shear - other%shear)), maxval(abs(one%pressure - other%pressure)))
       if (scale > 0.0_wp) difference = difference/scale
    end function difference

@@ -152,7 +152,7 @@ contains
       accepted = .not. (may_depend_on_path(path, interval) .or. any(slips(chain%before(1)%status)) .or. &
                         has_shear(path, chain%after(1)))
       if (accepted .or. chain%start_error > path%model%scene%method%accuracy &
-          *max(path%certificate%traction_scale(), chain%traction)) return
+          *max(path%certificate%traction_scale, chain%traction)) return
       increments = 2
       do
          call make_chain(path, interval, increments, start, finer, chain)
@@ -279,7 +279,7 @@ contains
       real(wp) :: traction
 
       error = 0.0_wp
-      traction = max(path%certificate%traction_scale(), chain%traction)
+      traction = max(path%certificate%traction_scale, chain%traction)
       if (traction > 0.0_wp) error = ((chain%traction_error - chain%start_error)/safety + chain%start_error) &
                                      /(path%model%scene%method%accuracy*traction)
    end function relative_traction_error
@@ -476,7 +476,7 @@ contains
       real(wp), parameter :: nothing = 1.0e-14_wp
 
       has_shear = maxval(abs(fields%shear)) > max(nothing, path%system%tolerance) &
-                  *max(path%certificate%traction_scale(), maxval(abs(fields%pressure)))
+                  *max(path%certificate%traction_scale, maxval(abs(fields%pressure)))
    end function has_shear
 
    !> Accept the increments of a chain. The dissipation of each node is scaled to that of the chain.

@@ -37,7 +37,7 @@ contains
       found = .false.
       if (path%has_over_stress()) return
       if (path%model%scene%friction%acts()) then
-         if (.not. path%model%scene%friction%law%is_linear() .or. path%model%scene%friction%law%drops()) return
+         if (.not. path%model%scene%friction%law%is_linear .or. path%model%scene%friction%law%drops) return
       end if
       call find_undecided(path, node, sort)
       if (size(node) == 0) return
@@ -71,7 +71,7 @@ contains
 
       gap = path%model%gap(path%state%fields)
       gap_scale = max(maxval(abs(path%model%initial_gap)), abs(path%state%fields%motion(motion_approach)))
-      pressure_scale = path%certificate%traction_scale()
+      pressure_scale = path%certificate%traction_scale
       allocate (node(0), sort(0))
       do i = 1, size(gap)
          associate (pressure => path%state%fields%pressure(i), shear => path%state%fields%shear(i))

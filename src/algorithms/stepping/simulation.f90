@@ -31,10 +31,10 @@ module mfv_simulation
    public :: states_reversals, states_steps, states_none, states_last_cycle
    public :: mark_loading, mark_reversal, mark_return, mark_cycle_start, mark_count
 
-   !> Records of the load history: one for every event, one for every step end, none.
+   !> Records of the load history, in the order of the key &output history: one for every event, one for every step end, none.
    integer, parameter :: history_events = 1, history_steps = 2, history_none = 3
-   !> Snapshots: at the ends of steps and at every turning point of a step with cycles; of steps alone; none; or at the ends of
-   !> steps and the turning points of the last cycle of a step.
+   !> Snapshots, in the order of the key &output states: at the ends of steps and at every turning point of a step with cycles; of
+   !> steps alone; none; or at the ends of steps and the turning points of the last cycle of a step.
    integer, parameter :: states_reversals = 1, states_steps = 2, states_none = 3, states_last_cycle = 4
 
    !> States stored for the last step with cycles: the start of the step, the reversal of its last complete cycle, the end of that
@@ -134,24 +134,7 @@ module mfv_simulation
       procedure :: resume
       procedure :: history_checksum
       procedure :: passed_through
-      procedure :: padded_state
       procedure :: padded
-      procedure, private :: advance_segment
-      procedure, private :: apply_leg
-      procedure, private :: begin_segment
-      procedure, private :: apply_segment
-      procedure, private :: keeps_state
-      procedure, private :: wears
-      procedure, private :: apply_wear
-      procedure, private :: restart_cycle
-      procedure, private :: take_snapshot
-      procedure, private :: begin_cycles
-      procedure, private :: complete_leg
-      procedure, private :: set_mark
-      procedure, private :: change_since
-      procedure, private :: note_history_checksum
-      procedure, private :: begin_step
-      procedure, private :: end_step_early
    end type simulation_type
 
 contains
@@ -202,7 +185,7 @@ contains
          before = sum(steps(:i - 1)%segments())
          segments = sum(steps%segments())
       end associate
-      call self%advance_segment(step, before, segments, observer)
+      call advance_segment(self, step, before, segments, observer)
       if (self%outcome /= MFV_COMPLETE) then
          self%failed_scene_step = i
       else if (self%leg%number == 0) then
@@ -217,7 +200,7 @@ contains
       class(observer_type), intent(inout), optional :: observer
 
       do while (self%outcome == MFV_COMPLETE)
-         call self%advance_segment(step, 0, step%segments(), observer)
+         call advance_segment(self, step, 0, step%segments(), observer)
          if (self%leg%number == 0) exit
       end do
    end subroutine advance
@@ -235,23 +218,23 @@ contains
       if (allocated(self%estimate)) deallocate (self%estimate)
       if (allocated(self%sensitivity)) deallocate (self%sensitivity)
       if (self%keep_restart) call self%note_restart()
-      if (self%leg%number == 0) call self%begin_step(step)
-      call self%apply_leg(step, before, segments, observer, error)
+      if (self%leg%number == 0) call begin_step(self, step)
+      call apply_leg(self, step, before, segments, observer, error)
       if (allocated(error)) then
-         call self%end_step_early(step, error)
+         call end_step_early(self, step, error)
          return
       end if
       associate (i => self%leg%number)
-         if (step%cycles > 0) call self%complete_leg(i, step%turns(), self%leg%cycle)
-         if (self%wears(step)) call self%apply_wear(step, before, segments, error)
+         if (step%cycles > 0) call complete_leg(self, i, step%turns(), self%leg%cycle)
+         if (wears(self, step)) call apply_wear(self, step, before, segments, error)
          if (allocated(error)) then
-            call self%end_step_early(step, error)
+            call end_step_early(self, step, error)
             return
          end if
          is_last = i == step%segments()
          if (mod(i, step%turns()) == 0 .and. i > step%turns() .and. step%steady_tolerance > 0.0_wp) &
             is_last = is_last .or. self%leg%cycle%change <= step%steady_tolerance
-         if (self%keeps_state(step, is_last)) call self%take_snapshot(self%steps_done + 1, i)
+         if (keeps_state(self, step, is_last)) call take_snapshot(self, self%steps_done + 1, i)
          i = i + 1
       end associate
       if (is_last) call end_step(self, step)
@@ -291,8 +274,8 @@ contains
       call self%contact%begin_wear(depth)
       targets = self%load
       targets(motion_wear) = load_type(control_displacement, 1.0_wp)
-      call self%begin_segment(targets, step, before, segments)
-      call self%apply_segment(error=error)
+      call begin_segment(self, targets, step, before, segments)
+      call apply_segment(self, error=error)
       call self%contact%end_wear()
       self%cycles_done = self%cycles_done + cycles - 1
       self%leg%number = self%leg%number + turns*(cycles - 1)
@@ -305,7 +288,7 @@ contains
 
       self%leg%cycle%return = new_turning_point(self%contact%model, self%contact%state, self%slip, self%contact%work, &
                                                 ieee_value(1.0_wp, ieee_quiet_nan))
-      call self%set_mark(mark_return, self%leg%number - 1)
+      call set_mark(self, mark_return, self%leg%number - 1)
    end subroutine restart_cycle
 
    !> Whether the state at the end of the present segment is saved. Only the last row of a load history counts as the end of a step.
@@ -338,7 +321,7 @@ contains
       self%message = 'step '//to_text(self%steps_done)//' was reached'
       if (step%cycles > cycles) self%message = self%message//', steady after '//to_text(cycles)//' of '// &
                                                to_text(step%cycles)//' cycles'
-      call self%note_history_checksum(step)
+      call note_history_checksum(self, step)
    end subroutine end_step
 
    !> Store the restart state at the start of a segment.
@@ -375,7 +358,7 @@ contains
          self%steps_done = self%scene_steps_done
          do i = 1, self%scene_steps_done
             call self%load_summary%add(steps(i))
-            call self%note_history_checksum(steps(i))
+            call note_history_checksum(self, steps(i))
          end do
          if (self%scene_steps_done > 0) self%message = 'step '//to_text(self%scene_steps_done)//' was reached'
          if (r%leg > 1) call continue_step(self, steps(self%scene_steps_done + 1), r%leg)
@@ -405,7 +388,7 @@ contains
          if (step%control(i) /= control_keep) call self%contact%begin_motion(i)
       end do
       call set_ends(self, step, self%contact%state)
-      if (step%cycles > 0) call self%begin_cycles(self%leg%cycle)
+      if (step%cycles > 0) call begin_cycles(self, self%leg%cycle)
    end subroutine begin_step
 
    !> The loads at both ends of a step that begins at the state `start`: its targets, and the loads to which its cycles return.
@@ -435,7 +418,7 @@ contains
                                                to_text(1 + (self%leg%number - 1)/step%turns())//': '//error%message
       self%leg%number = 0
       self%failed_step = self%steps_done + 1
-      call self%note_history_checksum(step)
+      call note_history_checksum(self, step)
    end subroutine end_step_early
 
    !> Add a completed step to the checksum of the load history: its controls and targets, and its final state.
@@ -501,8 +484,8 @@ contains
       cycle%return = new_turning_point(self%contact%model, self%contact%state, self%slip, self%contact%work, &
                                        ieee_value(1.0_wp, ieee_quiet_nan))
       cycle%loading_slip = self%slip
-      call self%set_mark(mark_loading, 0)
-      call self%set_mark(mark_return, 0)
+      call set_mark(self, mark_loading, 0)
+      call set_mark(self, mark_return, 0)
    end subroutine begin_cycles
 
    !> Complete leg `leg` of cycles of `turns` legs. Store its end if it is the farthest of its cycle so far and, after a complete
@@ -523,7 +506,7 @@ contains
          if (.not. is_farthest) is_farthest = point%distance(cycle%return) > cycle%reversal%distance(cycle%return)
          if (.not. is_farthest) return
          cycle%reversal = point
-         call self%set_mark(mark_pending, leg)
+         call set_mark(self, mark_pending, leg)
          return
       end if
       self%cycles_done = self%cycles_done + 1
@@ -535,8 +518,8 @@ contains
       self%marks(mark_reversal) = self%marks(mark_pending)
       cycle%return = point
       before = self%padded(self%marks(mark_cycle_start))
-      cycle%change = self%change_since(before)
-      call self%set_mark(mark_return, leg)
+      cycle%change = change_since(self, before)
+      call set_mark(self, mark_return, leg)
       if (cycle%number == 1) cycle%first_dissipation = cycle%dissipation()
       if (cycle%number == 1) cycle%first_slip = cycle%slip()
       call append_cycle(self%cycles, self%cycle_count, cycle, self%keep_history == history_none)
@@ -549,7 +532,7 @@ contains
       real(wp) :: scale
 
       change_since = 0.0_wp
-      scale = self%contact%certificate%traction_scale()
+      scale = self%contact%certificate%traction_scale
       associate (now => self%contact%state%fields, then => before%fields)
          if (scale > 0.0_wp) change_since = max(maxval(abs(now%pressure - then%pressure)), &
                                                 maxval(abs(now%shear - then%shear)))/scale
@@ -595,15 +578,15 @@ contains
       type(load_type) :: targets(motion_count)
 
       if (step%cycles > 0 .and. self%leg%number > 1 .and. mod(self%leg%number, step%turns()) == 1 .and. &
-          self%contact%model%scene%wear%acts()) call self%restart_cycle()
+          self%contact%model%scene%wear%acts()) call restart_cycle(self)
       targets = merge(self%leg%there, self%leg%back, mod(self%leg%number, 2) == 1)
       if (allocated(step%path)) targets = target_of(self%leg%there, step%control, &
                                                     step%path(:, 1 + mod(self%leg%number - 1, step%turns())))
       if (allocated(self%contact%derivatives)) &
          call self%contact%derivatives%begin_segment(mod(self%leg%number, 2) == 0 .and. .not. allocated(step%path), &
                                                      targets%control)
-      call self%begin_segment(targets, step, before, segments)
-      call self%apply_segment(observer, error)
+      call begin_segment(self, targets, step, before, segments)
+      call apply_segment(self, observer, error)
       if (allocated(self%contact%derivatives)) then
          if (allocated(error)) then
             call self%contact%derivatives%fail('the last step ended early')
@@ -653,7 +636,7 @@ contains
       integer :: i
       real(wp) :: force(motion_count)
 
-      force = self%contact%certificate%force_scale()*self%contact%model%unit_of_arm([(i, i=1, motion_count)])
+      force = self%contact%certificate%force_scale(motion_approach)*self%contact%model%unit_of_arm([(i, i=1, motion_count)])
       associate (segment => self%leg%segment, fields => self%contact%state%fields)
          segment%load = load_towards(start_of(fields%force, fields%motion, targets), targets, force)
          segment%friction = step%friction
@@ -690,15 +673,6 @@ contains
       self%snapshot_count = self%snapshot_count + 1
       self%snapshots(self%snapshot_count) = snapshot_type(self%contact%state, step, reversal, self%contact%model%added)
    end subroutine take_snapshot
-
-   !> The state of snapshot `number`, see padded.
-   function padded_state(self, number) result(state)
-      class(simulation_type), intent(in) :: self
-      integer, intent(in) :: number
-      type(contact_state_type) :: state
-
-      state = self%padded(self%snapshots(number))
-   end function padded_state
 
    !> The state of a snapshot on the present mesh, with the nodes added since.
    function padded(self, snapshot) result(state)

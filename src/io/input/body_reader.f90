@@ -1,13 +1,13 @@
 !> The bodies of a case, from its text.
 module mfv_body_reader
    use mfv_body
-   use mfv_circle, only: kernel_exact, kernel_fourier
+   use mfv_circle, only: kernel_fourier
    use mfv_error, only: error_type
    use mfv_key_reader
    use mfv_kinds, only: pi, wp
    use mfv_material, only: new_material, shear_modulus_of
    use mfv_matrix_file, only: read_matrix_body
-   use mfv_profile, only: level_line, level_mean, level_none, trace_type
+   use mfv_profile, only: trace_type
    use mfv_profile_file, only: read_profile
    use mfv_scene, only: scene_type
    use mfv_scene_indenter, only: default_datum, touches_everywhere
@@ -114,7 +114,7 @@ contains
       call read_material(reader, number, plane, body, error)
       if (allocated(error)) return
       body%yield_strength = reader%real_value('body', number, 'yield_strength')
-      body%kernel = reader%constant('body', number, 'kernel', [kernel_exact, kernel_fourier])
+      body%kernel = reader%choice('body', number, 'kernel')
       body%harmonics = reader%integer_value('body', number, 'harmonics')
       if (body%harmonics > 0 .and. body%kernel /= kernel_fourier) &
          call reader%complain('body', number, 'harmonics', "has no effect without kernel='fourier'; remove it", error)
@@ -202,9 +202,9 @@ contains
       trace%position_scale = reader%real_value('body', number, 'position_scale')
       trace%height_scale = reader%real_value('body', number, 'height_scale')
       trace%centred = reader%logical_value('body', number, 'centred')
-      trace%level = reader%constant('body', number, 'level', [level_none, level_mean, level_line])
+      trace%level = reader%choice('body', number, 'level')
       if (reader%has('body', number, 'interpolation')) &
-         trace%interpolation = reader%constant('body', number, 'interpolation', [interpolation_linear, interpolation_cubic])
+         trace%interpolation = reader%choice('body', number, 'interpolation')
       if (.not. abs(trace%height_scale) > 0.0_wp) &
          call reader%complain('body', number, 'height_scale', 'must not be 0', error)
    end subroutine read_trace

@@ -2,11 +2,13 @@
 !> `mfv_run --keys` are made from it.
 module mfv_case_keys
    use mfv_body, only: shape_names
+   use mfv_compliance, only: coupling_names
    use mfv_friction, only: friction_law_names
    use mfv_keys
    use mfv_kinds, only: wp
+   use mfv_material, only: plane_names
    use mfv_motions, only: motions, motion_count => user_motions, motion_shift, control_force, control_displacement, controlled_key
-   use mfv_scene, only: most_cycles
+   use mfv_scene, only: algorithm_names, integration_names, most_cycles, solver_names, stepping_names
    implicit none
    private
    public :: case_catalogue
@@ -43,9 +45,9 @@ contains
       type(catalogue_type), intent(inout) :: keys
 
       call keys%add('scene', 'title', kind_text, 'title of the scene, for summary, file and pictures')
-      call keys%add('scene', 'plane', kind_choice, 'plane strain or plane stress', default='strain', choices='strain stress')
+      call keys%add('scene', 'plane', kind_choice, 'plane strain or plane stress', default='strain', choices=plane_names)
       call keys%add('scene', 'coupling', kind_choice, 'elastic coupling: full, without the effect of shear on the normal '// &
-                    'problem (Goodman), or none', default='full', choices='full goodman none')
+                    'problem (Goodman), or none', default='full', choices=coupling_names)
       call keys%add('scene', 'length_unit', kind_text, 'name of the unit of length, for labels only', default='length')
       call keys%add('scene', 'force_unit', kind_text, 'name of the unit of force, for labels only', default='force')
    end subroutine add_scene_keys
@@ -225,18 +227,18 @@ contains
       type(catalogue_type), intent(inout) :: keys
 
       call keys%add('solver', 'algorithm', kind_choice, 'mfv: Method of First Violation; conventional: load steps with '// &
-                    'corrections of node statuses, for comparison', default='mfv', choices='mfv conventional')
+                    'corrections of node statuses, for comparison', default='mfv', choices=algorithm_names)
       call keys%add('solver', 'accuracy', kind_real, 'allowed error of large increments: of the tractions, relative to the '// &
                     'largest traction, and of the dissipation of each load segment, relative to it; 0: every event is followed', &
                     default='0', lower=0.0_wp, upper=0.1_wp)
       call keys%add('solver', 'stepping', kind_choice, "algorithm='mfv': events found from rates (event), or from trial load "// &
                     'steps and interpolation (nominal), with the same states (coulomb, static_kinetic); large increments '// &
                     '(leap: coulomb); or large increments if accuracy allows them and they cost less than events (auto)', &
-                    default='auto', choices='auto event nominal leap')
+                    default='auto', choices=stepping_names)
       call add_part_key(keys, 'load_step', '0.05', "nominal load step, as a fraction of each load segment: for "// &
                         "algorithm='conventional', stepping='nominal', integration='explicit'")
       call keys%add('solver', 'integration', kind_choice, 'dahl: second order with controlled error, or explicit with '// &
-                    'load_step (appendix B)', default='second_order', choices='second_order explicit')
+                    'load_step (appendix B)', default='second_order', choices=integration_names)
       call add_part_key(keys, 'friction_tolerance', '1e-4', 'dahl, weakening: error allowed in an increment, relative to the '// &
                         'largest traction')
       call keys%add('solver', 'iterations', kind_integer, 'conventional: largest number of status corrections at one '// &
@@ -244,7 +246,7 @@ contains
                     lower=1.0_wp, upper=1.0e6_wp)
       call keys%add('solver', 'linear_solver', kind_choice, 'auto: chosen by size and structure; dgesv: augmented system with '// &
                     'LAPACK, the reference; reduced: factorisation that is updated at every event; fft: iterative, with '// &
-                    'products by FFTW and no matrix', default='auto', choices='auto dgesv reduced fft')
+                    'products by FFTW and no matrix', default='auto', choices=solver_names)
       call add_part_key(keys, 'linear_tolerance', '1e-12', "linear_solver='fft': relative residual at which iteration stops")
    end subroutine add_solver_keys
 

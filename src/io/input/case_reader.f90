@@ -4,7 +4,6 @@ module mfv_case_reader
    use mfv_case, only: case_type
    use mfv_case_data, only: case_data_type
    use mfv_case_keys, only: case_catalogue
-   use mfv_compliance, only: coupling_full, coupling_goodman, coupling_none
    use mfv_discretisation_error, only: has_coarser_meshes
    use mfv_error, only: error_type
    use mfv_friction, only: friction_type, new_friction_law
@@ -12,12 +11,10 @@ module mfv_case_reader
    use mfv_history_reader, only: read_history
    use mfv_key_reader
    use mfv_kinds, only: wp
-   use mfv_material, only: plane_strain, plane_stress
    use mfv_mesh_reader, only: read_mesh
    use mfv_namelist, only: group_type, parse_namelists
    use mfv_scene
-   use mfv_simulation, only: history_events, history_none, history_steps, states_last_cycle, states_none, &
-                             states_reversals, states_steps
+   use mfv_simulation, only: states_steps
    use mfv_step_reader, only: read_steps
    use mfv_text_file, only: directory_of, read_text
    implicit none
@@ -89,8 +86,8 @@ contains
       case%length_unit = reader%text_value('scene', 1, 'length_unit')
       case%force_unit = reader%text_value('scene', 1, 'force_unit')
       case%result_path = reader%text_value('output', 1, 'file')
-      case%keep_history = reader%constant('output', 1, 'history', [history_events, history_steps, history_none])
-      case%keep_states = reader%constant('output', 1, 'states', [states_reversals, states_steps, states_none, states_last_cycle])
+      case%keep_history = reader%choice('output', 1, 'history')
+      case%keep_states = reader%choice('output', 1, 'states')
       if (count_groups(reader, 'history') > 0 .and. .not. reader%has('output', 1, 'states')) case%keep_states = states_steps
       case%checkpoint_minutes = reader%real_value('output', 1, 'checkpoint_minutes')
       case%error_estimate = reader%logical_value('output', 1, 'error_estimate')
@@ -111,8 +108,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       scene%title = reader%text_value('scene', 1, 'title')
-      scene%plane = reader%constant('scene', 1, 'plane', [plane_strain, plane_stress])
-      scene%coupling = reader%constant('scene', 1, 'coupling', [coupling_full, coupling_goodman, coupling_none])
+      scene%plane = reader%choice('scene', 1, 'plane')
+      scene%coupling = reader%choice('scene', 1, 'coupling')
       call check_bodies(reader, error)
       if (.not. allocated(error)) call read_body(reader, 1, scene%plane, scene%lower, error)
       if (.not. allocated(error)) call read_body(reader, 2, scene%plane, scene%upper, error)
@@ -164,14 +161,12 @@ contains
       type(reader_type), intent(in) :: reader
       type(method_type), intent(out) :: method
 
-      method%algorithm = reader%constant('solver', 1, 'algorithm', [algorithm_mfv, algorithm_conventional])
-      method%stepping = reader%constant('solver', 1, 'stepping', [stepping_auto, stepping_event, stepping_nominal, &
-                                                                  stepping_leap])
-      method%linear_solver = reader%constant('solver', 1, 'linear_solver', &
-                                             [solver_auto, solver_dgesv, solver_reduced, solver_fft])
+      method%algorithm = reader%choice('solver', 1, 'algorithm')
+      method%stepping = reader%choice('solver', 1, 'stepping')
+      method%linear_solver = reader%choice('solver', 1, 'linear_solver')
       method%linear_tolerance = reader%real_value('solver', 1, 'linear_tolerance')
       method%accuracy = reader%real_value('solver', 1, 'accuracy')
-      method%integration = reader%constant('solver', 1, 'integration', [integration_second_order, integration_explicit])
+      method%integration = reader%choice('solver', 1, 'integration')
       method%load_step = reader%real_value('solver', 1, 'load_step')
       method%friction_tolerance = reader%real_value('solver', 1, 'friction_tolerance')
       method%most_iterations = reader%integer_value('solver', 1, 'iterations')

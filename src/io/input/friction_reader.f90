@@ -8,7 +8,7 @@ module mfv_friction_reader
    use mfv_kinds, only: wp
    use mfv_profile_file, only: read_table
    use mfv_scene, only: scene_type
-   use mfv_wear, only: wear_archard, wear_work
+   use mfv_wear, only: wear_archard
    use mfv_strings, only: has_word, list_of_words, string_type, to_text
    implicit none
    private
@@ -72,8 +72,6 @@ contains
       character(*), intent(in) :: name
       character(:), allocatable, intent(out) :: coefficients, needed, known
       class(friction_law_type), allocatable :: law
-      type(string_type), allocatable :: needed_ones(:), optional_ones(:)
-      integer :: i
 
       coefficients = ''
       needed = ''
@@ -81,15 +79,9 @@ contains
       call new_friction_law(name, law)
       if (.not. allocated(law)) return
       coefficients = 'mu'
-      if (law%has_two_coefficients()) coefficients = 'mu_static mu_kinetic'
-      call law%parameters(needed_ones, optional_ones)
-      do i = 1, size(needed_ones)
-         needed = needed//' '//needed_ones(i)%text
-      end do
-      known = 'mu_file '//needed
-      do i = 1, size(optional_ones)
-         known = known//' '//optional_ones(i)%text
-      end do
+      if (law%has_two_coefficients) coefficients = 'mu_static mu_kinetic'
+      needed = trim(law%needed_keys)
+      known = 'mu_file '//needed//' '//trim(law%optional_keys)
    end subroutine find_keys_of_law
 
    !> Coefficients of friction: numbers, one number per node, or a file.
@@ -134,7 +126,7 @@ contains
       real(wp), allocatable :: table(:, :)
       logical :: two, in_memory
 
-      two = friction%law%has_two_coefficients()
+      two = friction%law%has_two_coefficients
       call find_file(reader, 'friction', 1, 'mu_file', path, in_memory)
       if (in_memory) then
          call reader%data%read_columns(path, trim(merge('x mu_static mu_kinetic', 'x mu                  ', two)), table, &
@@ -170,7 +162,7 @@ contains
       if (count_groups(reader, 'wear') == 0) return
       call reader%need('wear', 1, 'coefficient', error)
       if (allocated(error)) return
-      scene%wear%law = reader%constant('wear', 1, 'law', [wear_archard, wear_work])
+      scene%wear%law = reader%choice('wear', 1, 'law')
       scene%wear%coefficient = reader%real_value('wear', 1, 'coefficient')
       scene%wear%tolerance = reader%real_value('wear', 1, 'tolerance')
       scene%wear%block = reader%integer_value('wear', 1, 'block')

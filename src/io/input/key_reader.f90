@@ -35,7 +35,7 @@ module mfv_key_reader
       procedure :: integer_value
       procedure :: logical_value
       procedure :: text_value
-      procedure :: constant
+      procedure :: choice
       procedure :: complain
       procedure :: need
    end type reader_type
@@ -297,20 +297,18 @@ contains
       logical_value = has_word(words_for_true, lower_case(self%text_value(group, number, name)))
    end function logical_value
 
-   !> The constant of a choice; `constants` are in the order of the key's choices (mfv_case_keys).
-   pure integer function constant(self, group, number, name, constants)
+   !> Position of the value of a key among its choices (mfv_case_keys).
+   pure integer function choice(self, group, number, name)
       class(reader_type), intent(in) :: self
       character(*), intent(in) :: group, name
-      integer, intent(in) :: number, constants(:)
+      integer, intent(in) :: number
       type(string_type), allocatable :: choices(:)
-      integer :: i
 
-      constant = constants(1)
       choices = list_of_words(self%catalogue%keys(self%catalogue%place(group, name))%choices)
-      do i = 2, size(choices)
-         if (choices(i)%text == self%text_value(group, number, name)) constant = constants(i)
+      do choice = size(choices), 2, -1
+         if (choices(choice)%text == self%text_value(group, number, name)) return
       end do
-   end function constant
+   end function choice
 
    !> Error if a key is not given.
    subroutine need(self, group, number, name, error)

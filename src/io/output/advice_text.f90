@@ -6,8 +6,8 @@ module mfv_advice_text
    use mfv_kinds, only: wp
    use mfv_namelist, only: group_type, parse_namelists, write_entry
    use mfv_numbers, only: read_real
-   use mfv_scene, only: solver_dgesv, solver_fft, solver_reduced
-   use mfv_strings, only: has_word, list_of_words, quoted, shortened, string_type, to_text
+   use mfv_scene, only: solver_fft, solver_names
+   use mfv_strings, only: has_word, list_of_words, quoted, shortened, string_type, to_text, word_of
    implicit none
    private
    public :: write_advice, read_wanted_error, read_wanted_quantities
@@ -122,16 +122,8 @@ contains
       character(:), allocatable :: keys, values
 
       keys = 'linear_solver linear_tolerance'
-      select case (advice%linear_solver)
-      case (solver_dgesv)
-         values = "linear_solver='dgesv'"
-      case (solver_reduced)
-         values = "linear_solver='reduced'"
-      case (solver_fft)
-         values = "linear_solver='fft', linear_tolerance="//to_text(advice%linear_tolerance, 2)
-      case default
-         values = "linear_solver='auto'"
-      end select
+      values = "linear_solver='"//trim(word_of(solver_names, advice%linear_solver))//"'"
+      if (advice%linear_solver == solver_fft) values = values//', linear_tolerance='//to_text(advice%linear_tolerance, 2)
       if (.not. case%scene%friction%is_linear()) then
          keys = keys//' friction_tolerance'
          values = values//', friction_tolerance='//to_text(advice%friction_tolerance, 2)

@@ -7,19 +7,21 @@ module mfv_result_fields
    use mfv_case, only: case_type
    use mfv_certificate, only: residual_count, residual_descriptions, residual_names
    use mfv_closed_form, only: closed_form_of, closed_form_type
+   use mfv_compliance, only: coupling_names
    use mfv_contact_state, only: contact_state_type
    use mfv_error_bar
    use mfv_cycle, only: cycle_type
    use mfv_kinds, only: wp
+   use mfv_material, only: plane_names
    use mfv_motions, only: motions, motion_count => user_motions, motion_approach, motion_shift, motion_rotation, bulk_motions
    use mfv_node_status, only: event_names, holds, in_contact, node_status_names
    use mfv_observables, only: observable_count, observables, observables_of
-   use mfv_scene, only: stepping_leap
+   use mfv_scene, only: algorithm_names, stepping_leap, stepping_names
    use mfv_simulation, only: history_none, mark_cycle_start, mark_loading, mark_return, mark_reversal, &
                              sensitivity_type, simulation_type
    use mfv_state_interior, only: find_edges_at_nodes
    use mfv_status, only: status_outcome
-   use mfv_strings, only: add_text, list_of_words, string_type, to_text
+   use mfv_strings, only: add_text, list_of_words, string_type, to_text, word_of
    use mfv_text_file, only: find_working_directory
    use mfv_version, only: library_version
    use mfv_zone_edges, only: find_patches, find_zone_edges, patch_type, zone_edges_type
@@ -193,8 +195,6 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(string_type), intent(in) :: warnings(:)
       type(string_type), allocatable, intent(out) :: names(:), texts(:)
-      character(*), parameter :: planes = 'strain stress', couplings = 'full goodman none', &
-                                 algorithms = 'mfv conventional', steppings = 'event nominal leap'
       character(:), allocatable :: text, directory
       integer :: i
 
@@ -214,11 +214,11 @@ contains
       call add('mfv_version', library_version)
       call add('length_unit', case%length_unit)
       call add('force_unit', case%force_unit)
-      call add('plane', trim(word(planes, case%scene%plane)))
-      call add('coupling', trim(word(couplings, case%scene%coupling)))
+      call add('plane', trim(word_of(plane_names, case%scene%plane)))
+      call add('coupling', trim(word_of(coupling_names, case%scene%coupling)))
       call add('friction_law', trim(case%scene%friction%name()))
-      call add('algorithm', trim(word(algorithms, case%scene%method%algorithm)))
-      call add('stepping', trim(word(steppings, simulation%contact%model%scene%method%stepping)))
+      call add('algorithm', trim(word_of(algorithm_names, case%scene%method%algorithm)))
+      call add('stepping', trim(word_of(stepping_names, simulation%contact%model%scene%method%stepping)))
       call add('linear_solver', trim(simulation%contact%system%name))
       call add('lower_body', trim(body_name(case%scene%lower)))
       call add('upper_body', trim(body_name(case%scene%upper)))
@@ -250,20 +250,9 @@ contains
       type(body_type), intent(in) :: body
       character(len=len('rigid ') + len(shape_names)) :: name
 
-      name = word(shape_names, body%shape)
-      if (body%rigid) name = 'rigid '//word(shape_names, body%shape)
+      name = word_of(shape_names, body%shape)
+      if (body%rigid) name = 'rigid '//word_of(shape_names, body%shape)
    end function body_name
-
-   !> Word `number` of a list of words; padded with blanks.
-   pure function word(words, number) result(text)
-      character(*), intent(in) :: words
-      integer, intent(in) :: number
-      character(len=len(words)) :: text
-      type(string_type), allocatable :: list(:)
-
-      list = list_of_words(words)
-      text = list(number)%text
-   end function word
 
    subroutine add_scene(list, simulation)
       type(list_type), intent(inout) :: list
@@ -417,7 +406,7 @@ contains
       integer, intent(in) :: number
       type(contact_state_type) :: state
 
-      state = simulation%padded_state(number)
+      state = simulation%padded(simulation%snapshots(number))
       call add_state(list, simulation, state)
       call add_loads(list, simulation, state)
       call list%add('step', simulation%snapshots(number)%step, 'number of the step')
