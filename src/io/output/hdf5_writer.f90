@@ -4,17 +4,21 @@ module mfv_hdf5_writer
    use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_null_char, c_null_ptr, c_ptr
    use, intrinsic :: iso_fortran_env, only: int8, int64
    use hdf5
+   use h5ds
    use mfv_error, only: error_type, set_error
    use mfv_hdf5_start, only: start_hdf5
-   use mfv_result_fields, only: along_nothing, field_type
+   use mfv_result_fields, only: along_nothing, field_named, field_type
    use mfv_safe_file, only: check_replaceable, replace_file
    use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
    use mfv_strings, only: to_text
    use mfv_text_file, only: check_is_file
    implicit none
    private
-   public :: writer_type, check_writable, create_file, read_bytes, open_copy, finish_file, create_group, write_dataset, &
-             write_text, write_hdf5_version, note
+   public :: writer_type, check_writable, create_file, read_bytes, open_copy, finish_file, create_group, write_group, &
+             write_text, write_hdf5_version, note, along_grid
+
+   !> A field along all scales of its group (see along_nothing in mfv_result_fields).
+   integer, parameter :: along_grid = -1
 
    !> An open file.
    type :: writer_type
@@ -231,6 +235,46 @@ contains
       call note(writer, code)
       if (code == 0) call h5gclose_f(id, code)
    end subroutine create_group
+
+   !> A group with its own dimension scales: HDF5 limits the list of datasets of a scale to 64 KiB, too little for a long load
+   !> history. scales(i) is that of fields with along = i; fields with along_grid have all of them, the first one fastest.
+   subroutine write_group(writer, group, fields, scales)
+      type(writer_type), intent(inout) :: writer
+      character(*), intent(in) :: group
+      type(field_type), intent(in) :: fields(:), scales(:)
+      integer(hid_t) :: dataset, scale(size(scales))
+      integer :: code, i, j
+
+      call create_group(writer, group)
+      scale = -1
+      do i = 1, size(scales)
+         if (.not. any(fields%along == i .or. fields%along == along_grid)) cycle
+         call write_dataset(writer, group//'/'//scales(i)%name, scales(i), scale(i))
+         call h5dsset_scale_f(scale(i), code, scales(i)%name)
+         call note(writer, code)
+      end do
+      do i = 1, size(fields)
+         if (field_named(scales, fields(i)%name) > 0) cycle
+         if (fields(i)%along == along_grid) then
+            call write_dataset(writer, group//'/'//fields(i)%name, fields(i), dataset, &
+                               [(size(scales(j)%values), j=1, size(scales))])
+            do j = 1, size(scales)
+               call h5dsattach_scale_f(dataset, scale(size(scales) + 1 - j), j, code)
+               call note(writer, code)
+            end do
+         else
+            call write_dataset(writer, group//'/'//fields(i)%name, fields(i), dataset)
+            if (fields(i)%along > 0 .and. fields(i)%along <= size(scales)) then
+               call h5dsattach_scale_f(dataset, scale(fields(i)%along), 1, code)
+               call note(writer, code)
+            end if
+         end if
+         call h5dclose_f(dataset, code)
+      end do
+      do i = 1, size(scales)
+         if (scale(i) >= 0) call h5dclose_f(scale(i), code)
+      end do
+   end subroutine write_group
 
    !> Write a field at `path`, with its unit, description and flags; the dataset stays open. `shape`: its dimensions, the fastest
    !> first, if it has more than one.

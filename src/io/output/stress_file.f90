@@ -3,7 +3,6 @@ module mfv_stress_file
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only: int8
    use hdf5
-   use h5ds
    use mfv_case, only: case_type
    use mfv_case_reader, only: read_case_text
    use mfv_error, only: error_type, set_error
@@ -211,6 +210,7 @@ contains
       type(stress_result_type), intent(inout) :: result
       type(error_type), allocatable, intent(out) :: error
       type(writer_type) :: writer
+      type(field_type), allocatable :: fields(:), scales(:)
       character(:), allocatable :: state
 
       if (.not. allocated(bytes)) then
@@ -226,14 +226,15 @@ contains
       if (allocated(request%x)) result%group = result%group//'_points'
       call open_copy(path, bytes, writer)
       if (writer%code == 0) then
-         call renew_group(writer, state, result%group)
-         call write_group(writer, case, result)
+         call remove_group(writer, state, result%group)
+         call collect_fields(case, result, fields, scales)
+         call write_group(writer, result%group, fields, scales)
       end if
       call finish_file(path, 'the stresses', writer, error)
    end subroutine write_stresses
 
-   !> Create the group and its parents, without earlier stresses.
-   subroutine renew_group(writer, state, group)
+   !> Remove earlier stresses, and create the parents of their group.
+   subroutine remove_group(writer, state, group)
       type(writer_type), intent(inout) :: writer
       character(*), intent(in) :: state, group
       integer :: code
@@ -244,59 +245,28 @@ contains
          call h5ldelete_f(writer%file, group, code)
          call note(writer, code)
       end if
-      call create_group(writer, group)
-   end subroutine renew_group
+   end subroutine remove_group
 
-   !> The stresses in their group; over a grid with its dimension scales.
-   subroutine write_group(writer, case, result)
-      type(writer_type), intent(inout) :: writer
+   !> The fields of a group, and the dimension scales of a grid.
+   subroutine collect_fields(case, result, fields, scales)
       type(case_type), intent(in) :: case
       type(stress_result_type), intent(in) :: result
-      type(field_type), allocatable :: scales(:), fields(:)
-      integer(hid_t) :: scale(2), dataset
-      integer :: code, i, j
-
-      allocate (scales(0))
-      call add_real(scales, 'x', result%x, along_nodes, case%length_unit, 'position to the right of the origin')
-      if (allocated(result%depth)) &
-         call add_real(scales, 'depth', result%depth, along_nodes, case%length_unit, 'depth below the surface')
-      do i = 1, size(scales)
-         call write_dataset(writer, result%group//'/'//scales(i)%name, scales(i), scale(i))
-         if (size(scales) == 2) call h5dsset_scale_f(scale(i), code, scales(i)%name)
-      end do
-      call collect_fields(case, result, fields)
-      do i = 1, size(fields)
-         associate (path => result%group//'/'//fields(i)%name)
-            if (fields(i)%along == along_nothing .or. size(scales) == 1) then
-               call write_dataset(writer, path, fields(i), dataset)
-            else
-               call write_dataset(writer, path, fields(i), dataset, [size(result%x), size(result%depth)])
-               do j = 1, 2
-                  call h5dsattach_scale_f(dataset, scale(3 - j), j, code)
-                  call note(writer, code)
-               end do
-            end if
-         end associate
-         call h5dclose_f(dataset, code)
-      end do
-      do i = 1, size(scales)
-         call h5dclose_f(scale(i), code)
-      end do
-   end subroutine write_group
-
-   !> The fields besides the scales.
-   subroutine collect_fields(case, result, fields)
-      type(case_type), intent(in) :: case
-      type(stress_result_type), intent(in) :: result
-      type(field_type), allocatable, intent(out) :: fields(:)
+      type(field_type), allocatable, intent(out) :: fields(:), scales(:)
       type(string_type), allocatable :: names(:)
-      integer :: i
+      integer :: along, i
 
-      allocate (fields(0))
+      allocate (fields(0), scales(0))
+      along = along_nodes
+      call add_real(fields, 'x', result%x, along_nodes, case%length_unit, 'position to the right of the origin')
+      if (allocated(result%depth)) then
+         along = along_grid
+         scales = fields
+         call add_real(scales, 'depth', result%depth, along_nodes, case%length_unit, 'depth below the surface')
+      end if
       names = list_of_words(stress_names)
-      call add_real(fields, 'y', result%y, along_nodes, case%length_unit, 'height above the origin')
+      call add_real(fields, 'y', result%y, along, case%length_unit, 'height above the origin')
       do i = 1, stress_count
-         call add_real(fields, names(i)%text, result%stress(i, :), along_nodes, result%stress_unit, trim(meaning(names(i)%text)))
+         call add_real(fields, names(i)%text, result%stress(i, :), along, result%stress_unit, trim(meaning(names(i)%text)))
          if (names(i)%text == 'principal_angle') fields(size(fields))%unit = '1'
       end do
       call add('largest_von_mises', result%largest%value, result%stress_unit, 'largest von Mises stress in the body, by refinement')
