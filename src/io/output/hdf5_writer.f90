@@ -2,7 +2,7 @@
 !> earlier file unchanged. On a full disk HDF5 itself would end the process with a segmentation fault at exit.
 module mfv_hdf5_writer
    use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_null_char, c_null_ptr, c_ptr
-   use, intrinsic :: iso_fortran_env, only: int8, int64
+   use, intrinsic :: iso_fortran_env, only: int8
    use hdf5
    use h5ds
    use mfv_error, only: error_type, set_error
@@ -11,10 +11,10 @@ module mfv_hdf5_writer
    use mfv_safe_file, only: check_replaceable, replace_file
    use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
    use mfv_strings, only: to_text
-   use mfv_text_file, only: check_is_file
+   use mfv_text_file, only: read_text
    implicit none
    private
-   public :: writer_type, check_writable, create_file, read_bytes, open_copy, finish_file, create_group, write_group, &
+   public :: writer_type, check_writable, create_file, open_copy, finish_file, create_group, write_group, &
              write_text, write_hdf5_version, note, along_grid
 
    !> A field along all scales of its group (see along_nothing in mfv_result_fields).
@@ -28,7 +28,7 @@ module mfv_hdf5_writer
       !> Type and dataspace of every text attribute.
       integer(hid_t), private :: text_type = -1, scalar = -1
       !> Bytes that the file must still have when it is replaced, for a copy with additions.
-      integer(int8), allocatable, private :: expected(:)
+      character(:), allocatable, private :: expected
    end type writer_type
 
    !> Every result has this attribute of the root, and no other file.
@@ -102,7 +102,7 @@ contains
    !> Open a copy of a file, given by its `bytes`; it replaces the file if that is still unchanged.
    subroutine open_copy(path, bytes, writer)
       character(*), intent(in) :: path
-      integer(int8), intent(in), target :: bytes(:)
+      character(*), intent(in), target :: bytes
       type(writer_type), intent(out) :: writer
       integer(hid_t) :: access
       integer :: code
@@ -110,32 +110,13 @@ contains
       writer%expected = bytes
       call start_hdf5()
       call in_memory(access, writer)
-      call h5pset_file_image_f(access, c_loc(bytes), size(bytes, kind=size_t), code)
+      call h5pset_file_image_f(access, c_loc(bytes), len(bytes, kind=size_t), code)
       call note(writer, code)
       call h5fopen_f(path//in_memory_only, H5F_ACC_RDWR_F, writer%file, code, access_prp=access)
       call note(writer, code)
       call h5pclose_f(access, code)
       call make_text_type(writer)
    end subroutine open_copy
-
-   !> The bytes of a file; not allocated if it cannot be read.
-   subroutine read_bytes(path, bytes)
-      character(*), intent(in) :: path
-      integer(int8), allocatable, intent(out) :: bytes(:)
-      type(error_type), allocatable :: error
-      integer(int64) :: length
-      integer :: code, unit
-
-      call check_is_file(path, error)
-      if (allocated(error)) return
-      open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', iostat=code)
-      if (code /= 0) return
-      inquire (unit=unit, size=length)
-      allocate (bytes(length), stat=code)
-      if (code == 0) read (unit, iostat=code) bytes
-      close (unit)
-      if (code /= 0 .and. allocated(bytes)) deallocate (bytes)
-   end subroutine read_bytes
 
    !> Access properties of a file in memory; the caller closes them.
    subroutine in_memory(access, writer)
@@ -193,13 +174,14 @@ contains
    logical function has_changed(path, writer)
       character(*), intent(in) :: path
       type(writer_type), intent(in) :: writer
-      integer(int8), allocatable :: bytes(:)
+      character(:), allocatable :: bytes
+      type(error_type), allocatable :: error
 
       has_changed = allocated(writer%expected)
       if (.not. has_changed) return
-      call read_bytes(path, bytes)
+      call read_text(path, bytes, error, any_length=.true.)
       if (.not. allocated(bytes)) return
-      if (size(bytes) == size(writer%expected)) has_changed = any(bytes /= writer%expected)
+      if (len(bytes) == len(writer%expected)) has_changed = bytes /= writer%expected
    end function has_changed
 
    !> The bytes of the file in memory.

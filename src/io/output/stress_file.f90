@@ -1,7 +1,6 @@
 !> Stresses inside the bodies of a result, added to its file under /stress/<state>/<body>, on a grid or at points.
 module mfv_stress_file
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
-   use, intrinsic :: iso_fortran_env, only: int8
    use hdf5
    use mfv_case, only: case_type
    use mfv_case_reader, only: read_case_text
@@ -15,7 +14,7 @@ module mfv_stress_file
    use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
    use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
    use mfv_strings, only: list_of_words, string_type
-   use mfv_text_file, only: path_from
+   use mfv_text_file, only: path_from, read_text
    implicit none
    private
    public :: stress_request_type, stress_result_type, add_stresses
@@ -56,9 +55,9 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(interior_type) :: interior
       type(case_type) :: case
-      integer(int8), allocatable :: bytes(:)
+      character(:), allocatable :: bytes
 
-      call read_bytes(path, bytes)
+      call read_text(path, bytes, error, any_length=.true.)
       call read_interior(path, request, case, interior, result, error)
       if (allocated(error)) then
          error%message = path//': '//error%message
@@ -204,7 +203,7 @@ contains
    !> Write the stresses to a copy of the file, which replaces it if it still has these `bytes`.
    subroutine write_stresses(path, bytes, request, case, result, error)
       character(*), intent(in) :: path
-      integer(int8), allocatable, intent(in) :: bytes(:)
+      character(:), allocatable, intent(in) :: bytes
       type(stress_request_type), intent(in) :: request
       type(case_type), intent(in) :: case
       type(stress_result_type), intent(inout) :: result
