@@ -84,16 +84,22 @@ contains
       type(stress_result_type), intent(inout) :: result
       type(error_type), allocatable, intent(out) :: error
       integer(hid_t) :: file
-      character(:), allocatable :: text, source, directory, state, position
+      character(:), allocatable :: text, source, directory, state, position, bulk_path
       !> Limit of numbers in a result; products of larger ones would overflow.
       real(wp), parameter :: largest_size = 1.0e100_wp
       real(wp), allocatable, dimension(:) :: arc, width, pressure, shear, contact_edge, stick_edge, bulk
+      real(wp) :: none
       logical :: available
 
       call open_to_read(path, file, error)
       if (allocated(error)) return
       state = 'state'
-      if (request%step > 0) state = step_group(request%step)
+      bulk_path = 'summary'
+      if (request%step > 0) then
+         state = step_group(request%step)
+         bulk_path = state
+      end if
+      bulk_path = bulk_path//'/'//trim(motions(bulk_motions(merge(2, 1, request%upper)))%key)
       call read_text_attribute(file, 'input', text, error)
       if (.not. allocated(error)) call read_text_attribute(file, 'input_file', source, error)
       if (.not. allocated(error)) call read_text_attribute(file, 'working_directory', directory, error)
@@ -106,9 +112,10 @@ contains
       if (.not. allocated(error)) call read_vector(file, 'mesh/width', size(arc), width, error)
       if (.not. allocated(error)) call read_vector(file, state//'/pressure', size(arc), pressure, error)
       if (.not. allocated(error)) call read_vector(file, state//'/shear', size(arc), shear, error)
-      if (.not. allocated(error)) call read_edges(file, state//'/contact_edge', size(arc), contact_edge, error)
-      if (.not. allocated(error)) call read_edges(file, state//'/stick_edge', size(arc), stick_edge, error)
-      if (.not. allocated(error)) call read_bulk(file, request, bulk, error)
+      none = ieee_value(1.0_wp, ieee_quiet_nan)
+      if (.not. allocated(error)) call read_or_default(file, state//'/contact_edge', size(arc), none, contact_edge, error, .true.)
+      if (.not. allocated(error)) call read_or_default(file, state//'/stick_edge', size(arc), none, stick_edge, error, .true.)
+      if (.not. allocated(error)) call read_or_default(file, bulk_path, 1, 0.0_wp, bulk, error)
       call close_read(file)
       if (.not. allocated(error)) then
          if (any(abs([arc, width, pressure, shear, bulk, pack(contact_edge,.not. ieee_is_nan(contact_edge)), &
@@ -125,38 +132,22 @@ contains
                                           'matrix: its stresses cannot be computed')
    end subroutine read_interior
 
-   !> Edges between nodes; NaN if the file has none.
-   subroutine read_edges(file, path, nodes, edges, error)
+   !> A finite vector, with `default` for every value if the file has none. `gaps`: NaN is allowed.
+   subroutine read_or_default(file, path, length, default, values, error, gaps)
       integer(hid_t), intent(in) :: file
       character(*), intent(in) :: path
-      integer, intent(in) :: nodes
-      real(wp), allocatable, intent(out) :: edges(:)
+      integer, intent(in) :: length
+      real(wp), intent(in) :: default
+      real(wp), allocatable, intent(out) :: values(:)
       type(error_type), allocatable, intent(inout) :: error
+      logical, intent(in), optional :: gaps
 
       if (has(file, path)) then
-         call read_vector(file, path, nodes, edges, error, gaps=.true.)
+         call read_vector(file, path, length, values, error, gaps)
       else
-         allocate (edges(nodes), source=ieee_value(1.0_wp, ieee_quiet_nan))
+         allocate (values(length), source=default)
       end if
-   end subroutine read_edges
-
-   !> The bulk stress of the body, shape (1); 0 if the file has none.
-   subroutine read_bulk(file, request, bulk, error)
-      integer(hid_t), intent(in) :: file
-      type(stress_request_type), intent(in) :: request
-      real(wp), allocatable, intent(out) :: bulk(:)
-      type(error_type), allocatable, intent(inout) :: error
-      character(:), allocatable :: path
-
-      path = 'summary/'
-      if (request%step > 0) path = step_group(request%step)//'/'
-      path = path//trim(motions(bulk_motions(merge(2, 1, request%upper)))%key)
-      if (has(file, path)) then
-         call read_vector(file, path, 1, bulk, error)
-      else
-         bulk = [0.0_wp]
-      end if
-   end subroutine read_bulk
+   end subroutine read_or_default
 
    !> lower or upper.
    pure function body_name(request) result(name)
