@@ -62,7 +62,17 @@ module mfv_contact
       integer :: separated_events = 0, linear_solves = 0
    end type derivative_type
 
-   type :: contact_type
+   !> Cache until the state changes: paths of all fields, one group of them, observables, warnings, attributes.
+   type :: cache_type
+      private
+      type(string_type), allocatable :: paths(:)
+      character(:), allocatable :: group
+      type(field_type), allocatable :: fields(:)
+      real(wp), allocatable :: observed(:)
+      type(string_type), allocatable :: warnings(:), attribute_names(:), attribute_texts(:)
+   end type cache_type
+
+   type, extends(cache_type) :: contact_type
       type(case_type) :: case
       type(simulation_type) :: simulation
       !> Checksum by which saved states identify their scene.
@@ -71,12 +81,6 @@ module mfv_contact
       !> Checkpoints: the file, seconds between them (0: none), and when the next one is due.
       character(:), allocatable :: checkpoint_path
       real(wp), private :: checkpoint_seconds = 0.0_wp, next_checkpoint = 0.0_wp
-      !> Cache until the state changes: paths of all fields, one group of them, observables, warnings, attributes.
-      type(string_type), allocatable, private :: paths(:)
-      character(:), allocatable, private :: group
-      type(field_type), allocatable, private :: fields(:)
-      real(wp), allocatable, private :: observed(:)
-      type(string_type), allocatable, private :: warnings(:), attribute_names(:), attribute_texts(:)
    contains
       procedure :: ask_for
       procedure :: keep_checkpoints
@@ -103,8 +107,7 @@ module mfv_contact
       procedure :: find_interior
       procedure :: make_interior
       procedure :: write
-      procedure, private :: get_reals, get_integers, get_real, get_integer, begin, refine, forget, expect_made, &
-         write_checkpoint
+      procedure, private :: get_reals, get_integers, get_real, get_integer, begin, refine, expect_made, write_checkpoint
    end type contact_type
 
 contains
@@ -258,7 +261,7 @@ contains
 
       call self%refine(observer)
       if (self%status() /= MFV_COMPLETE) return
-      call self%forget()
+      self%cache_type = cache_type()
       do while (self%simulation%has_segments_left())
          call self%simulation%run_segment(observer)
          if (self%simulation%outcome == MFV_COMPLETE) call self%write_checkpoint(observer)
@@ -293,7 +296,7 @@ contains
       if (present(observer)) call observer%begin_work('')
       self%case%scene%mesh%refined = .false.
       keep_restart = self%simulation%keep_restart
-      call self%forget()
+      self%cache_type = cache_type()
       call self%begin()
       self%simulation%keep_restart = keep_restart
    end subroutine refine
@@ -314,7 +317,7 @@ contains
       call self%save(error)
       self%simulation%outcome = MFV_COMPLETE
       self%simulation%message = message
-      call self%forget()
+      self%cache_type = cache_type()
       if (allocated(error) .and. present(observer)) call observer%warn('checkpoint not written: '//error%message)
       self%next_checkpoint = seconds_now() + self%checkpoint_seconds
    end subroutine write_checkpoint
@@ -390,7 +393,7 @@ contains
       end if
       call self%refine(observer)
       if (self%simulation%outcome /= MFV_COMPLETE) return
-      call self%forget()
+      self%cache_type = cache_type()
       call self%simulation%advance(absolute, observer=observer)
    end subroutine advance
 
@@ -595,7 +598,7 @@ contains
 
       call self%expect_made(error)
       if (.not. allocated(error)) call kept%come_back(self%simulation, self%scene, error)
-      if (.not. allocated(error)) call self%forget()
+      if (.not. allocated(error)) self%cache_type = cache_type()
    end subroutine come_back
 
    !> Paths of all present fields, such as state/pressure, as in the result file; valid until the state changes.
@@ -827,17 +830,5 @@ contains
       call find_results(self)
       call write_result(where_to, self%case, self%simulation, self%warnings, error, observed=self%observed)
    end subroutine write
-
-   !> Clear the cache, before the state changes.
-   subroutine forget(self)
-      class(contact_type), intent(inout) :: self
-
-      if (allocated(self%paths)) deallocate (self%paths)
-      if (allocated(self%group)) deallocate (self%group)
-      if (allocated(self%fields)) deallocate (self%fields)
-      if (allocated(self%observed)) deallocate (self%observed)
-      if (allocated(self%warnings)) deallocate (self%warnings)
-      if (allocated(self%attribute_names)) deallocate (self%attribute_names, self%attribute_texts)
-   end subroutine forget
 
 end module mfv_contact
