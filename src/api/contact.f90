@@ -36,8 +36,8 @@ module mfv_contact
    use mfv_validity, only: validity_warnings
    implicit none
    private
-   public :: contact_type, loads_type, derivative_type, read_contact, read_contact_text, new_contact, step_to, body_lower, &
-             body_upper
+   public :: contact_type, loads_type, derivative_type, read_contact, read_contact_text, new_contact, step_to, count_values, &
+             body_lower, body_upper
 
    integer, parameter :: body_lower = 0, body_upper = 1
    !> Invalid control: a force and a displacement for one direction.
@@ -621,14 +621,14 @@ contains
       paths => self%paths
    end subroutine field_paths
 
-   !> The field at a path; `whole`: whether it must have integers or reals. Its group is cached: the pointer is valid until another
-   !> group is requested or the state changes. Error MFV_BAD_ARGUMENT.
-   subroutine find_field(self, path, field, error, whole)
+   !> The field at a path; `whole`: whether it must have integers or reals; `single`: it must have one value. Its group is cached:
+   !> the pointer is valid until another group is requested or the state changes. Error MFV_BAD_ARGUMENT.
+   subroutine find_field(self, path, field, error, whole, single)
       class(contact_type), intent(inout), target :: self
       character(*), intent(in) :: path
       type(field_type), pointer, intent(out) :: field
       type(error_type), allocatable, intent(out) :: error
-      logical, intent(in), optional :: whole
+      logical, intent(in), optional :: whole, single
       integer :: number, slash
 
       nullify (field)
@@ -649,9 +649,23 @@ contains
       end if
       field => self%fields(number)
       if (.not. present(whole)) return
-      if (allocated(field%whole) .neqv. whole) &
+      if (allocated(field%whole) .neqv. whole) then
          call set_error(error, MFV_BAD_ARGUMENT, path//' has '//trim(merge('reals        ', 'whole numbers', whole)))
+      else if (present(single) .and. count_values(field) /= 1) then
+         call set_error(error, MFV_BAD_ARGUMENT, path//' has '//to_text(int(count_values(field)))//' values, not one')
+      end if
    end subroutine find_field
+
+   !> Number of values of a field.
+   pure integer(int64) function count_values(field)
+      type(field_type), intent(in) :: field
+
+      if (allocated(field%whole)) then
+         count_values = size(field%whole, kind=int64)
+      else
+         count_values = size(field%values, kind=int64)
+      end if
+   end function count_values
 
    !> Whether the cached group is this one.
    pure logical function is_at_hand(group, wanted)
@@ -690,12 +704,11 @@ contains
       character(*), intent(in) :: path
       real(wp), intent(out) :: value
       type(error_type), allocatable, intent(out) :: error
-      real(wp), allocatable :: values(:)
+      type(field_type), pointer :: field
 
       value = 0.0_wp
-      call self%get_reals(path, values, error)
-      if (.not. allocated(error)) call expect_one(path, size(values), error)
-      if (.not. allocated(error)) value = values(1)
+      call self%find_field(path, field, error, whole=.false., single=.true.)
+      if (.not. allocated(error)) value = field%values(1)
    end subroutine get_real
 
    subroutine get_integer(self, path, value, error)
@@ -703,22 +716,12 @@ contains
       character(*), intent(in) :: path
       integer, intent(out) :: value
       type(error_type), allocatable, intent(out) :: error
-      integer, allocatable :: values(:)
+      type(field_type), pointer :: field
 
       value = 0
-      call self%get_integers(path, values, error)
-      if (.not. allocated(error)) call expect_one(path, size(values), error)
-      if (.not. allocated(error)) value = values(1)
+      call self%find_field(path, field, error, whole=.true., single=.true.)
+      if (.not. allocated(error)) value = field%whole(1)
    end subroutine get_integer
-
-   !> Error MFV_BAD_ARGUMENT unless `count` is 1.
-   subroutine expect_one(path, count, error)
-      character(*), intent(in) :: path
-      integer, intent(in) :: count
-      type(error_type), allocatable, intent(out) :: error
-
-      if (count /= 1) call set_error(error, MFV_BAD_ARGUMENT, path//' has '//to_text(count)//' values, not one')
-   end subroutine expect_one
 
    !> Names and texts of the attributes of the result: title, outcome, input and so on; valid until the state changes.
    subroutine attributes(self, names, texts)

@@ -5,7 +5,7 @@ module mfv_c
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding
    use mfv_case_keys, only: case_catalogue
-   use mfv_contact, only: contact_type, derivative_type, loads_type, new_contact, read_contact, read_contact_text
+   use mfv_contact, only: contact_type, count_values, derivative_type, loads_type, new_contact, read_contact, read_contact_text
    use mfv_contact_state, only: contact_state_type
    use mfv_draft, only: draft_type, read_draft
    use mfv_error, only: error_type, set_error
@@ -785,7 +785,7 @@ contains
 
       call find_field(handle, path, field, status)
       if (status /= MFV_COMPLETE) return
-      if (present(count)) count = values_of(field)
+      if (present(count)) count = count_values(field)
       if (present(is_integer)) is_integer = merge(1, 0, allocated(field%whole))
       if (present(along)) along = field%along
       call say(field%unit, unit, unit_size)
@@ -843,21 +843,10 @@ contains
       call c_f_pointer(handle, self)
       if (.not. has_places) then
          status = refused(self, text_in(path)//': values is null')
-      else if (count /= values_of(field)) then
-         status = refused(self, text_in(path)//' has '//to_text(int(values_of(field)))//' values; count must be that number')
+      else if (count /= count_values(field)) then
+         status = refused(self, text_in(path)//' has '//to_text(int(count_values(field)))//' values; count must be that number')
       end if
    end subroutine find_field_to_copy
-
-   !> Number of values of a field.
-   pure integer(c_size_t) function values_of(field)
-      type(field_type), intent(in) :: field
-
-      if (allocated(field%whole)) then
-         values_of = size(field%whole, kind=c_size_t)
-      else
-         values_of = size(field%values, kind=c_size_t)
-      end if
-   end function values_of
 
    integer(c_int) function mfv_stress_unguarded(handle, body, step, count, x, y, stresses, place, tension) result(status) &
       bind(C)
