@@ -629,6 +629,7 @@ contains
       type(field_type), pointer, intent(out) :: field
       type(error_type), allocatable, intent(out) :: error
       logical, intent(in), optional :: whole, single
+      logical :: is_cached
       integer :: number, slash
 
       nullify (field)
@@ -637,7 +638,9 @@ contains
       number = 0
       slash = index(path, '/', back=.true.)
       if (slash > 1) then
-         if (.not. is_at_hand(self%group, path(:slash - 1))) then
+         is_cached = allocated(self%group)
+         if (is_cached) is_cached = self%group == path(:slash - 1)
+         if (.not. is_cached) then
             call group_fields(self%case, self%simulation, path(:slash - 1), self%fields, self%observed)
             self%group = path(:slash - 1)
          end if
@@ -666,15 +669,6 @@ contains
          count_values = size(field%values, kind=int64)
       end if
    end function count_values
-
-   !> Whether the cached group is this one.
-   pure logical function is_at_hand(group, wanted)
-      character(:), allocatable, intent(in) :: group
-      character(*), intent(in) :: wanted
-
-      is_at_hand = .false.
-      if (allocated(group)) is_at_hand = group == wanted
-   end function is_at_hand
 
    !> See get, as for the next three.
    subroutine get_reals(self, path, values, error)
