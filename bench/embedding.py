@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import mfv
-from mfv._library import Control, LoadsStructure, StepStructure, library
+from mfv._library import CONTROLS, LoadsStructure, StepStructure, library
 from mfv.loads import MOTIONS
 
 #: Increments of a cycle, the smallest steps first, and the amplitude of the shift [length].
@@ -92,7 +92,7 @@ def by_ctypes(count: int, with_case: bool, loads: bool) -> NDArray[np.float64]:
 def _step(shift: float) -> StepStructure:
     motions = {motion.displacement: number for number, motion in enumerate(MOTIONS)}
     step = StepStructure(size=sizeof(StepStructure), friction=1, relative=1)
-    step.control[motions["shift"]] = Control.DISPLACEMENT
+    step.control[motions["shift"]] = CONTROLS.index("DISPLACEMENT")
     step.target[motions["shift"]] = shift
     return step
 

@@ -6,10 +6,9 @@ module mfv_advise_case
    use mfv_case_reader, only: read_case_file
    use mfv_error, only: error_type, set_error
    use mfv_command_line, only: fail, get_argument, refuse
-   use mfv_interrupts, only: catch_interrupts
    use mfv_kinds, only: wp
-   use mfv_one_thread, only: use_one_thread
    use mfv_output, only: print_text
+   use mfv_process, only: catch_interrupts, use_one_thread
    use mfv_status, only: MFV_COMPLETE
    use mfv_strings, only: shortened
    use mfv_terminal, only: terminal_observer_type

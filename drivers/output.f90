@@ -3,6 +3,7 @@
 module mfv_output
    use, intrinsic :: iso_c_binding
    use, intrinsic :: iso_fortran_env, only: error_unit
+   use mfv_process, only: begin_streams
    use mfv_safe_file, only: write_all
    use mfv_status, only: MFV_FILE_ERROR, status_exit_code
    use mfv_version, only: library_version
@@ -11,19 +12,14 @@ module mfv_output
    private
    public :: begin_program, print_text, print_line
 
-   interface
-      subroutine c_begin_streams() bind(C, name='mfv_begin_streams')
-      end subroutine c_begin_streams
-   end interface
-
 contains
 
-   !> Open the standard streams (streams.c) and answer --help, -h and --version, wherever they are among the arguments; the program
+   !> Open the standard streams (process.c) and answer --help, -h and --version, wherever they are among the arguments; the program
    !> then ends. `usage`, `help`: lines of text.
    subroutine begin_program(program, usage, help)
       character(*), intent(in) :: program, usage(:), help(:)
 
-      call c_begin_streams()
+      call begin_streams()
       if (has_argument('--help') .or. has_argument('-h')) then
          call print_lines([character(max(len(usage), len(help))) :: usage, help])
       else if (has_argument('--version')) then

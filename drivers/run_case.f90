@@ -6,10 +6,9 @@ module mfv_run_case
    use mfv_contact, only: contact_type, read_contact
    use mfv_error, only: error_type
    use mfv_features, only: has_hdf5, no_hdf5_message
-   use mfv_interrupts, only: catch_interrupts
    use mfv_kinds, only: wp
-   use mfv_one_thread, only: use_one_thread
    use mfv_output, only: print_line, print_text
+   use mfv_process, only: catch_interrupts, use_one_thread
    use mfv_status, only: MFV_COMPLETE, MFV_INTERRUPTED, status_exit_code
    use mfv_terminal, only: terminal_observer_type
    implicit none

@@ -4,9 +4,9 @@ module mfv_terminal
    use, intrinsic :: iso_fortran_env, only: error_unit
    use mfv_clock, only: seconds_now
    use mfv_contact_state, only: contact_state_type
-   use mfv_interrupts, only: is_interrupted
    use mfv_kinds, only: wp
    use mfv_observer, only: observer_type
+   use mfv_process, only: is_interrupted
    use mfv_strings, only: to_text
    implicit none
    private
@@ -58,7 +58,7 @@ contains
       logical, intent(out) :: stop_wanted
       real(wp) :: now
 
-      stop_wanted = is_interrupted()
+      stop_wanted = is_interrupted() /= 0
       if (.not. self%visible) return
       now = seconds_now()
       if (now < self%next_time) return

@@ -10,7 +10,6 @@ import os
 import struct
 from collections.abc import Callable, Iterator
 from ctypes import POINTER, c_char_p, c_double, c_int, c_int32, c_size_t, c_void_p
-from enum import IntEnum
 from pathlib import Path
 
 import numpy as np
@@ -31,24 +30,18 @@ HOW_TO_BUILD = (
 )
 
 
-class Control(IntEnum):
-    """Control of a motion in a step: constant load, prescribed force or prescribed displacement."""
+#: Controls of a motion in a step, in the order of their numbers: constant load, prescribed force or prescribed displacement.
+CONTROLS = ("KEEP", "FORCE", "DISPLACEMENT")
 
-    KEEP = 0
-    FORCE = 1
-    DISPLACEMENT = 2
-
-
-class Along(IntEnum):
-    """The dimension of a field."""
-
-    NOTHING = 0
-    NODES = 1
-    RECORDS = 2
-    COMPANIONS = 3
-    CYCLES = 4
-    PATCHES = 5
-
+#: What the values of a field are listed along, in the order of the numbers, and the dimensions in the result file.
+ALONG: dict[str, tuple[str, ...]] = {
+    "NOTHING": (),
+    "NODES": ("x",),
+    "RECORDS": ("record",),
+    "COMPANIONS": ("companion_nodes",),
+    "CYCLES": ("cycle",),
+    "PATCHES": ("patch",),
+}
 
 #: A number for every motion.
 _per_motion = c_double * len(MOTIONS)

@@ -20,9 +20,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _html, errors
 from ._library import (
+    ALONG,
+    CONTROLS,
     LARGEST_INTEGER,
-    Along,
-    Control,
     LoadsStructure,
     StepStructure,
     library,
@@ -49,11 +49,9 @@ writing = threading.Lock()
 MANY_NODES, LONG_LAWS = 400, ("weakening", "dahl")
 
 #: Dimensions of fields by the library's code for them.
-_DIMENSIONS: tuple[tuple[str, ...], ...] = ((), ("x",), ("record",), ("companion_nodes",), ("cycle",), ("patch",))
+_DIMENSIONS = tuple(ALONG.values())
 
-
-#: Plain numbers, faster than members of enumerations.
-_KEEP, _FORCE, _DISPLACEMENT = map(int, Control)
+_KEEP, _FORCE, _DISPLACEMENT = range(len(CONTROLS))
 _SIZE_OF_STEP = ctypes.sizeof(StepStructure)
 
 #: A step without targets.
@@ -476,8 +474,8 @@ class Case:
             about = byref(count), byref(is_integer), byref(along)
             self._call("mfv_field_info", name, *about, unit, len(unit), description, len(description))
             values: Values = self.values(path, np.empty(count.value, np.int32 if is_integer else np.float64))
-        scalar = along.value == Along.NOTHING
-        return Field(values[0] if scalar else values, text_of(unit), text_of(description), _DIMENSIONS[along.value])
+        dimensions = _DIMENSIONS[along.value]
+        return Field(values if dimensions else values[0], text_of(unit), text_of(description), dimensions)
 
     def _count(self, path: str) -> int:
         """Number of values of the field at a path. Raises BadArgument."""

@@ -32,32 +32,15 @@ if TYPE_CHECKING:
 NUMBERS, CLOSED_FORM, SURFACE, MARKS = "#0072B2", "#D55E00", "#009E73", "#000000"
 STICK, RIGHT, LEFT, WITHOUT_FRICTION = "#DCEBF5", "#FBE3B4", "#EBD3E1", "#EEEEEE"
 ZONES: dict[int, dict[str, Any]] = {
-    NodeStatus.STICK: {"label": "stick", "facecolor": STICK, "edgecolor": "none"},
-    NodeStatus.SLIP_RIGHT: {
-        "label": "lower surface slips to the right",
-        "facecolor": RIGHT,
-        "edgecolor": "#C9A24B",
-        "hatch": "///",
-    },
-    NodeStatus.SLIP_LEFT: {
-        "label": "lower surface slips to the left",
-        "facecolor": LEFT,
-        "edgecolor": "#B98AA6",
-        "hatch": "\\\\\\",
-    },
-    NodeStatus.CREEP_RIGHT: {
-        "label": "lower surface creeps to the right",
-        "facecolor": STICK,
-        "edgecolor": "#9FC3DA",
-        "hatch": "//",
-    },
-    NodeStatus.CREEP_LEFT: {
-        "label": "lower surface creeps to the left",
-        "facecolor": STICK,
-        "edgecolor": "#9FC3DA",
-        "hatch": "\\\\",
-    },
-    NodeStatus.FRICTIONLESS: {"label": "frictionless contact", "facecolor": WITHOUT_FRICTION, "edgecolor": "none"},
+    status: {"label": label, "facecolor": colour, "edgecolor": edge, "hatch": hatch}
+    for status, label, colour, edge, hatch in (
+        (NodeStatus.STICK, "stick", STICK, "none", None),
+        (NodeStatus.SLIP_RIGHT, "lower surface slips to the right", RIGHT, "#C9A24B", "///"),
+        (NodeStatus.SLIP_LEFT, "lower surface slips to the left", LEFT, "#B98AA6", "\\\\\\"),
+        (NodeStatus.CREEP_RIGHT, "lower surface creeps to the right", STICK, "#9FC3DA", "//"),
+        (NodeStatus.CREEP_LEFT, "lower surface creeps to the left", STICK, "#9FC3DA", "\\\\"),
+        (NodeStatus.FRICTIONLESS, "frictionless contact", WITHOUT_FRICTION, "none", None),
+    )
 }
 
 STYLE: dict[Any, Any] = {

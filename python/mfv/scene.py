@@ -404,18 +404,7 @@ class Scene(KeyGroup):
     length_unit: str | None
     force_unit: str | None
 
-    _not_keys: ClassVar[tuple[str, ...]] = (
-        "lower",
-        "upper",
-        "friction",
-        "mesh",
-        "wear",
-        "steps",
-        "history",
-        "solver",
-        "output",
-        "name",
-    )
+    _not_keys = ("lower", "upper", "friction", "mesh", "wear", "steps", "history", "solver", "output", "name")
 
     def __init__(
         self,
@@ -438,21 +427,10 @@ class Scene(KeyGroup):
     ) -> None:
         """`name`: the name of the scene in messages; paths of files are relative to its directory. Raises TypeError for an
         argument of the wrong class."""
-        self.lower = lower
-        self.upper = upper
-        self.friction = friction
-        self.mesh = mesh
-        self.wear = wear
+        given = locals()
+        for attribute in self._names():
+            setattr(self, attribute, given[attribute])
         self.steps = list(steps)
-        self.history = history
-        self.solver = solver
-        self.output = output
-        self.title = title
-        self.plane = plane
-        self.coupling = coupling
-        self.length_unit = length_unit
-        self.force_unit = force_unit
-        self.name = name
         self._check_parts()
 
     @classmethod

@@ -36,8 +36,8 @@ module mfv_contact
    use mfv_validity, only: validity_warnings
    implicit none
    private
-   public :: contact_type, loads_type, derivative_type, read_contact, read_contact_text, new_contact, step_to, body_lower, &
-             body_upper
+   public :: contact_type, loads_type, derivative_type, read_contact, read_contact_text, new_contact, step_to, count_values, &
+             body_lower, body_upper
 
    integer, parameter :: body_lower = 0, body_upper = 1
    !> Invalid control: a force and a displacement for one direction.
@@ -62,7 +62,17 @@ module mfv_contact
       integer :: separated_events = 0, linear_solves = 0
    end type derivative_type
 
-   type :: contact_type
+   !> Cache until the state changes: paths of all fields, one group of them, observables, warnings, attributes.
+   type :: cache_type
+      private
+      type(string_type), allocatable :: paths(:)
+      character(:), allocatable :: group
+      type(field_type), allocatable :: fields(:)
+      real(wp), allocatable :: observed(:)
+      type(string_type), allocatable :: warnings(:), attribute_names(:), attribute_texts(:)
+   end type cache_type
+
+   type, extends(cache_type) :: contact_type
       type(case_type) :: case
       type(simulation_type) :: simulation
       !> Checksum by which saved states identify their scene.
@@ -71,12 +81,6 @@ module mfv_contact
       !> Checkpoints: the file, seconds between them (0: none), and when the next one is due.
       character(:), allocatable :: checkpoint_path
       real(wp), private :: checkpoint_seconds = 0.0_wp, next_checkpoint = 0.0_wp
-      !> Cache until the state changes: paths of all fields, one group of them, observables, warnings, attributes.
-      type(string_type), allocatable, private :: paths(:)
-      character(:), allocatable, private :: group
-      type(field_type), allocatable, private :: fields(:)
-      real(wp), allocatable, private :: observed(:)
-      type(string_type), allocatable, private :: warnings(:), attribute_names(:), attribute_texts(:)
    contains
       procedure :: ask_for
       procedure :: keep_checkpoints
@@ -103,8 +107,7 @@ module mfv_contact
       procedure :: find_interior
       procedure :: make_interior
       procedure :: write
-      procedure, private :: get_reals, get_integers, get_real, get_integer, begin, refine, forget, expect_made, &
-         write_checkpoint
+      procedure, private :: get_reals, get_integers, get_real, get_integer, begin, refine, expect_made, write_checkpoint
    end type contact_type
 
 contains
@@ -258,7 +261,7 @@ contains
 
       call self%refine(observer)
       if (self%status() /= MFV_COMPLETE) return
-      call self%forget()
+      self%cache_type = cache_type()
       do while (self%simulation%has_segments_left())
          call self%simulation%run_segment(observer)
          if (self%simulation%outcome == MFV_COMPLETE) call self%write_checkpoint(observer)
@@ -293,7 +296,7 @@ contains
       if (present(observer)) call observer%begin_work('')
       self%case%scene%mesh%refined = .false.
       keep_restart = self%simulation%keep_restart
-      call self%forget()
+      self%cache_type = cache_type()
       call self%begin()
       self%simulation%keep_restart = keep_restart
    end subroutine refine
@@ -314,7 +317,7 @@ contains
       call self%save(error)
       self%simulation%outcome = MFV_COMPLETE
       self%simulation%message = message
-      call self%forget()
+      self%cache_type = cache_type()
       if (allocated(error) .and. present(observer)) call observer%warn('checkpoint not written: '//error%message)
       self%next_checkpoint = seconds_now() + self%checkpoint_seconds
    end subroutine write_checkpoint
@@ -390,7 +393,7 @@ contains
       end if
       call self%refine(observer)
       if (self%simulation%outcome /= MFV_COMPLETE) return
-      call self%forget()
+      self%cache_type = cache_type()
       call self%simulation%advance(absolute, observer=observer)
    end subroutine advance
 
@@ -597,7 +600,7 @@ contains
 
       call self%expect_made(error)
       if (.not. allocated(error)) call kept%come_back(self%simulation, self%scene, error)
-      if (.not. allocated(error)) call self%forget()
+      if (.not. allocated(error)) self%cache_type = cache_type()
    end subroutine come_back
 
    !> Paths of all present fields, such as state/pressure, as in the result file; valid until the state changes.
@@ -620,14 +623,15 @@ contains
       paths => self%paths
    end subroutine field_paths
 
-   !> The field at a path; `whole`: whether it must have integers or reals. Its group is cached: the pointer is valid until another
-   !> group is requested or the state changes. Error MFV_BAD_ARGUMENT.
-   subroutine find_field(self, path, field, error, whole)
+   !> The field at a path; `whole`: whether it must have integers or reals; `single`: it must have one value. Its group is cached:
+   !> the pointer is valid until another group is requested or the state changes. Error MFV_BAD_ARGUMENT.
+   subroutine find_field(self, path, field, error, whole, single)
       class(contact_type), intent(inout), target :: self
       character(*), intent(in) :: path
       type(field_type), pointer, intent(out) :: field
       type(error_type), allocatable, intent(out) :: error
-      logical, intent(in), optional :: whole
+      logical, intent(in), optional :: whole, single
+      logical :: is_cached
       integer :: number, slash
 
       nullify (field)
@@ -636,7 +640,9 @@ contains
       number = 0
       slash = index(path, '/', back=.true.)
       if (slash > 1) then
-         if (.not. is_at_hand(self%group, path(:slash - 1))) then
+         is_cached = allocated(self%group)
+         if (is_cached) is_cached = self%group == path(:slash - 1)
+         if (.not. is_cached) then
             call group_fields(self%case, self%simulation, path(:slash - 1), self%fields, self%observed)
             self%group = path(:slash - 1)
          end if
@@ -648,18 +654,23 @@ contains
       end if
       field => self%fields(number)
       if (.not. present(whole)) return
-      if (allocated(field%whole) .neqv. whole) &
+      if (allocated(field%whole) .neqv. whole) then
          call set_error(error, MFV_BAD_ARGUMENT, path//' has '//trim(merge('reals        ', 'whole numbers', whole)))
+      else if (present(single) .and. count_values(field) /= 1) then
+         call set_error(error, MFV_BAD_ARGUMENT, path//' has '//to_text(int(count_values(field)))//' values, not one')
+      end if
    end subroutine find_field
 
-   !> Whether the cached group is this one.
-   pure logical function is_at_hand(group, wanted)
-      character(:), allocatable, intent(in) :: group
-      character(*), intent(in) :: wanted
+   !> Number of values of a field.
+   pure integer(int64) function count_values(field)
+      type(field_type), intent(in) :: field
 
-      is_at_hand = .false.
-      if (allocated(group)) is_at_hand = group == wanted
-   end function is_at_hand
+      if (allocated(field%whole)) then
+         count_values = size(field%whole, kind=int64)
+      else
+         count_values = size(field%values, kind=int64)
+      end if
+   end function count_values
 
    !> See get, as for the next three.
    subroutine get_reals(self, path, values, error)
@@ -689,12 +700,11 @@ contains
       character(*), intent(in) :: path
       real(wp), intent(out) :: value
       type(error_type), allocatable, intent(out) :: error
-      real(wp), allocatable :: values(:)
+      type(field_type), pointer :: field
 
       value = 0.0_wp
-      call self%get_reals(path, values, error)
-      if (.not. allocated(error)) call expect_one(path, size(values), error)
-      if (.not. allocated(error)) value = values(1)
+      call self%find_field(path, field, error, whole=.false., single=.true.)
+      if (.not. allocated(error)) value = field%values(1)
    end subroutine get_real
 
    subroutine get_integer(self, path, value, error)
@@ -702,22 +712,12 @@ contains
       character(*), intent(in) :: path
       integer, intent(out) :: value
       type(error_type), allocatable, intent(out) :: error
-      integer, allocatable :: values(:)
+      type(field_type), pointer :: field
 
       value = 0
-      call self%get_integers(path, values, error)
-      if (.not. allocated(error)) call expect_one(path, size(values), error)
-      if (.not. allocated(error)) value = values(1)
+      call self%find_field(path, field, error, whole=.true., single=.true.)
+      if (.not. allocated(error)) value = field%whole(1)
    end subroutine get_integer
-
-   !> Error MFV_BAD_ARGUMENT unless `count` is 1.
-   subroutine expect_one(path, count, error)
-      character(*), intent(in) :: path
-      integer, intent(in) :: count
-      type(error_type), allocatable, intent(out) :: error
-
-      if (count /= 1) call set_error(error, MFV_BAD_ARGUMENT, path//' has '//to_text(count)//' values, not one')
-   end subroutine expect_one
 
    !> Names and texts of the attributes of the result: title, outcome, input and so on; valid until the state changes.
    subroutine attributes(self, names, texts)
@@ -829,17 +829,5 @@ contains
       call find_results(self)
       call write_result(where_to, self%case, self%simulation, self%warnings, error, observed=self%observed)
    end subroutine write
-
-   !> Clear the cache, before the state changes.
-   subroutine forget(self)
-      class(contact_type), intent(inout) :: self
-
-      if (allocated(self%paths)) deallocate (self%paths)
-      if (allocated(self%group)) deallocate (self%group)
-      if (allocated(self%fields)) deallocate (self%fields)
-      if (allocated(self%observed)) deallocate (self%observed)
-      if (allocated(self%warnings)) deallocate (self%warnings)
-      if (allocated(self%attribute_names)) deallocate (self%attribute_names, self%attribute_texts)
-   end subroutine forget
 
 end module mfv_contact

@@ -4,31 +4,41 @@
 #include "handles.h"
 #include <mfv.h>
 
-#define GUARD(name, kind, use, parameters, arguments)              \
-  int name##_unguarded parameters;                                 \
+#define GUARD(name, kind, use, parameters, arguments) \
+  int name##_unguarded parameters;                    \
+  GUARDED(name, kind, use, parameters, name##_unguarded arguments)
+
+#define GUARDED(name, kind, use, parameters, call)                 \
   int name parameters {                                            \
     void *object = NULL;                                           \
     int status = mfv_handle_enter(handle, kind, use, &object);     \
     if (status != MFV_COMPLETE) return status;                     \
-    status = name##_unguarded arguments;                           \
+    status = call;                                                 \
     mfv_handle_leave(handle);                                      \
     return status;                                                 \
   }
 
 /* Queries also need exclusive use: they may change the message and the cache. */
-#define SCENE(name, parameters, arguments) GUARD(name, MFV_KIND_SCENE, MFV_ALONE, parameters, arguments)
+#define SCENE(name, parameters, arguments) GUARDED(name, MFV_KIND_SCENE, MFV_ALONE, parameters, mfv_scene_change arguments)
 #define CASE(name, parameters, arguments) GUARD(name, MFV_KIND_CASE, MFV_ALONE, parameters, arguments)
 
-SCENE(mfv_scene_set_text, (mfv_scene *handle, const char *key, const char *value), (object, key, value))
-SCENE(mfv_scene_set_real, (mfv_scene *handle, const char *key, double value), (object, key, value))
-SCENE(mfv_scene_set_reals, (mfv_scene *handle, const char *key, const double *values, size_t count), (object, key, values, count))
-SCENE(mfv_scene_set_integer, (mfv_scene *handle, const char *key, int value), (object, key, value))
-SCENE(mfv_scene_set_logical, (mfv_scene *handle, const char *key, int value), (object, key, value))
-SCENE(mfv_scene_remove, (mfv_scene *handle, const char *key), (object, key))
-SCENE(mfv_scene_make_room, (mfv_scene *handle, const char *key), (object, key))
+/* All changes of a scene are one procedure of mfv_c.f90. A double has every value of an int. */
+enum { SET_TEXT = 1, SET_REAL, SET_REALS, SET_INTEGER, SET_LOGICAL, SET_DATA, REMOVE_KEY, MAKE_ROOM };
+int mfv_scene_change(void *object, int change, const char *key, const char *text, size_t rows, size_t columns, const double *values);
+
+SCENE(mfv_scene_set_text, (mfv_scene *handle, const char *key, const char *value), (object, SET_TEXT, key, value, 0, 0, NULL))
+SCENE(mfv_scene_set_real, (mfv_scene *handle, const char *key, double value), (object, SET_REAL, key, NULL, 1, 1, &value))
+SCENE(mfv_scene_set_reals, (mfv_scene *handle, const char *key, const double *values, size_t count),
+      (object, SET_REALS, key, NULL, count, 1, values))
+SCENE(mfv_scene_set_integer, (mfv_scene *handle, const char *key, int value),
+      (object, SET_INTEGER, key, NULL, 1, 1, &(double){value}))
+SCENE(mfv_scene_set_logical, (mfv_scene *handle, const char *key, int value),
+      (object, SET_LOGICAL, key, NULL, 1, 1, &(double){value}))
+SCENE(mfv_scene_remove, (mfv_scene *handle, const char *key), (object, REMOVE_KEY, key, NULL, 0, 0, NULL))
+SCENE(mfv_scene_make_room, (mfv_scene *handle, const char *key), (object, MAKE_ROOM, key, NULL, 0, 0, NULL))
 SCENE(mfv_scene_set_data,
       (mfv_scene *handle, const char *file, const char *dataset, size_t rows, size_t columns, const double *values),
-      (object, file, dataset, rows, columns, values))
+      (object, SET_DATA, file, dataset, rows, columns, values))
 GUARD(mfv_scene_text, MFV_KIND_SCENE, MFV_READING, (const mfv_scene *handle, char *buffer, size_t size, size_t *length),
       (object, buffer, size, length))
 

@@ -5,7 +5,7 @@ module mfv_c
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding
    use mfv_case_keys, only: case_catalogue
-   use mfv_contact, only: contact_type, derivative_type, loads_type, new_contact, read_contact, read_contact_text
+   use mfv_contact, only: contact_type, count_values, derivative_type, loads_type, new_contact, read_contact, read_contact_text
    use mfv_contact_state, only: contact_state_type
    use mfv_draft, only: draft_type, read_draft
    use mfv_error, only: error_type, set_error
@@ -48,6 +48,10 @@ module mfv_c
 
    !> Larger array sizes, such as (size_t)-1, are errors.
    integer(c_size_t), parameter :: most = 2_c_size_t**31 - 1
+
+   !> Changes of a scene, as in guards.c.
+   integer(c_int), parameter :: set_text = 1, set_real = 2, set_reals = 3, set_integer = 4, set_logical = 5, set_data = 6, &
+                                remove_key = 7, make_room = 8
 
    !> mfv_step of the header.
    type, bind(C) :: c_step
@@ -222,113 +226,55 @@ contains
       if (.not. c_associated(handle)) status = MFV_BAD_HANDLE
    end subroutine issue
 
-   integer(c_int) function mfv_scene_set_text_unguarded(scene, key, value) result(status) bind(C)
-      type(c_ptr), value :: scene, key, value
-      type(draft_type), pointer :: draft
-      type(error_type), allocatable :: error
-
-      call find_scene(scene, key, c_associated(value), draft, status)
-      if (status == MFV_COMPLETE) call draft%set(text_in(key), text_in(value), error)
-      if (allocated(error)) status = MFV_BAD_ARGUMENT
-   end function mfv_scene_set_text_unguarded
-
-   integer(c_int) function mfv_scene_set_real_unguarded(scene, key, value) result(status) bind(C)
-      type(c_ptr), value :: scene, key
-      real(c_double), value :: value
-      type(draft_type), pointer :: draft
-      type(error_type), allocatable :: error
-
-      call find_scene(scene, key, .true., draft, status)
-      if (status == MFV_COMPLETE) call draft%set(text_in(key), value, error)
-      if (allocated(error)) status = MFV_BAD_ARGUMENT
-   end function mfv_scene_set_real_unguarded
-
-   integer(c_int) function mfv_scene_set_reals_unguarded(scene, key, values, count) result(status) bind(C)
-      type(c_ptr), value :: scene, key
-      integer(c_size_t), value :: count
-      real(c_double), intent(in), optional :: values(count)
-      type(draft_type), pointer :: draft
-      type(error_type), allocatable :: error
-
-      call find_scene(scene, key, present(values) .and. (count == 0 .or. is_size(count)), draft, status)
-      if (status == MFV_COMPLETE) call draft%set(text_in(key), values, error)
-      if (allocated(error)) status = MFV_BAD_ARGUMENT
-   end function mfv_scene_set_reals_unguarded
-
-   integer(c_int) function mfv_scene_set_integer_unguarded(scene, key, value) result(status) bind(C)
-      type(c_ptr), value :: scene, key
-      integer(c_int), value :: value
-      type(draft_type), pointer :: draft
-      type(error_type), allocatable :: error
-
-      call find_scene(scene, key, .true., draft, status)
-      if (status == MFV_COMPLETE) call draft%set(text_in(key), int(value), error)
-      if (allocated(error)) status = MFV_BAD_ARGUMENT
-   end function mfv_scene_set_integer_unguarded
-
-   integer(c_int) function mfv_scene_set_logical_unguarded(scene, key, value) result(status) bind(C)
-      type(c_ptr), value :: scene, key
-      integer(c_int), value :: value
-      type(draft_type), pointer :: draft
-      type(error_type), allocatable :: error
-
-      call find_scene(scene, key, .true., draft, status)
-      if (status == MFV_COMPLETE) call draft%set(text_in(key), value /= 0, error)
-      if (allocated(error)) status = MFV_BAD_ARGUMENT
-   end function mfv_scene_set_logical_unguarded
-
-   integer(c_int) function mfv_scene_remove_unguarded(scene, key) result(status) bind(C)
-      type(c_ptr), value :: scene, key
-      type(draft_type), pointer :: draft
-      type(error_type), allocatable :: error
-
-      call find_scene(scene, key, .true., draft, status)
-      if (status == MFV_COMPLETE) call draft%remove(text_in(key), error)
-      if (allocated(error)) status = MFV_BAD_ARGUMENT
-   end function mfv_scene_remove_unguarded
-
-   integer(c_int) function mfv_scene_make_room_unguarded(scene, key) result(status) bind(C)
-      type(c_ptr), value :: scene, key
-      type(draft_type), pointer :: draft
-      type(error_type), allocatable :: error
-
-      call find_scene(scene, key, .true., draft, status)
-      if (status == MFV_COMPLETE) call draft%remove(text_in(key), error, alternatives=.true.)
-      if (allocated(error)) status = MFV_BAD_ARGUMENT
-   end function mfv_scene_make_room_unguarded
-
-   integer(c_int) function mfv_scene_set_data_unguarded(scene, file, dataset, rows, columns, values) result(status) bind(C)
-      type(c_ptr), value :: scene, file, dataset
+   !> All calls that change a scene. `change`: see set_text. `key`: name of a key, or of data. MFV_BAD_ARGUMENT without a key or
+   !> usable values; mfv_create then fails as well.
+   integer(c_int) function mfv_scene_change(scene, change, key, text, rows, columns, values) result(status) bind(C)
+      type(c_ptr), value :: scene, key, text
+      integer(c_int), value :: change
       integer(c_size_t), value :: rows, columns
       real(c_double), intent(in), optional :: values(columns, rows)
       type(draft_type), pointer :: draft
       type(error_type), allocatable :: error
+      character(:), allocatable :: name
       logical :: usable
-
-      usable = c_associated(dataset) .and. present(values) .and. is_size(rows) .and. is_size(columns)
-      call find_scene(scene, file, usable, draft, status)
-      if (status == MFV_COMPLETE) call draft%set_data(text_in(file), text_in(dataset), transpose(values), error)
-      if (allocated(error)) status = MFV_BAD_ARGUMENT
-   end function mfv_scene_set_data_unguarded
-
-   !> The object of a scene. MFV_BAD_ARGUMENT without a key or usable values; mfv_create then fails as well.
-   subroutine find_scene(scene, key, has_values, draft, status)
-      type(c_ptr), intent(in) :: scene, key
-      logical, intent(in) :: has_values
-      type(draft_type), pointer, intent(out) :: draft
-      integer(c_int), intent(out) :: status
-      type(error_type), allocatable :: fault
 
       call c_f_pointer(scene, draft)
       status = MFV_BAD_ARGUMENT
       if (.not. c_associated(key)) return
-      if (has_values) then
-         status = MFV_COMPLETE
-      else
-         call set_error(fault, MFV_INPUT_ERROR, text_in(key)//': an argument is null, empty or too large')
-         call draft%keep_fault(text_in(key), fault)
+      name = text_in(key)
+      select case (change)
+      case (set_text)
+         usable = c_associated(text)
+      case (set_reals)
+         usable = present(values) .and. (rows == 0 .or. is_size(rows))
+      case (set_data)
+         usable = c_associated(text) .and. present(values) .and. is_size(rows) .and. is_size(columns)
+      case default
+         usable = .true.
+      end select
+      if (.not. usable) then
+         call set_error(error, MFV_INPUT_ERROR, name//': an argument is null, empty or too large')
+         call draft%keep_fault(name, error)
+         return
       end if
-   end subroutine find_scene
+      select case (change)
+      case (set_text)
+         call draft%set(name, text_in(text), error)
+      case (set_real)
+         call draft%set(name, values(1, 1), error)
+      case (set_reals)
+         call draft%set(name, values(1, :), error)
+      case (set_integer)
+         call draft%set(name, int(values(1, 1)), error)
+      case (set_logical)
+         call draft%set(name, abs(values(1, 1)) > 0.0_wp, error)
+      case (set_data)
+         call draft%set_data(name, text_in(text), transpose(values), error)
+      case (remove_key, make_room)
+         call draft%remove(name, error, alternatives=change == make_room)
+      end select
+      if (.not. allocated(error)) status = MFV_COMPLETE
+   end function mfv_scene_change
 
    !> Whether this can be the size of an array that a caller has. (The upper half of size_t is below 0 here.)
    pure logical function is_size(count)
@@ -839,7 +785,7 @@ contains
 
       call find_field(handle, path, field, status)
       if (status /= MFV_COMPLETE) return
-      if (present(count)) count = values_of(field)
+      if (present(count)) count = count_values(field)
       if (present(is_integer)) is_integer = merge(1, 0, allocated(field%whole))
       if (present(along)) along = field%along
       call say(field%unit, unit, unit_size)
@@ -897,21 +843,10 @@ contains
       call c_f_pointer(handle, self)
       if (.not. has_places) then
          status = refused(self, text_in(path)//': values is null')
-      else if (count /= values_of(field)) then
-         status = refused(self, text_in(path)//' has '//to_text(int(values_of(field)))//' values; count must be that number')
+      else if (count /= count_values(field)) then
+         status = refused(self, text_in(path)//' has '//to_text(int(count_values(field)))//' values; count must be that number')
       end if
    end subroutine find_field_to_copy
-
-   !> Number of values of a field.
-   pure integer(c_size_t) function values_of(field)
-      type(field_type), intent(in) :: field
-
-      if (allocated(field%whole)) then
-         values_of = size(field%whole, kind=c_size_t)
-      else
-         values_of = size(field%values, kind=c_size_t)
-      end if
-   end function values_of
 
    integer(c_int) function mfv_stress_unguarded(handle, body, step, count, x, y, stresses, place, tension) result(status) &
       bind(C)

@@ -28,8 +28,8 @@ ENUMERATIONS = {
         **{f"MFV_{motion.displacement.upper()}": number for number, motion in enumerate(MOTIONS)},
         "MFV_MOTIONS": len(MOTIONS),
     },
-    "MFV_KEEP": {f"MFV_{control.name}": control.value for control in _library.Control},
-    "MFV_ALONG_NOTHING": {f"MFV_ALONG_{along.name}": along.value for along in _library.Along},
+    "MFV_KEEP": {f"MFV_{name}": number for number, name in enumerate(_library.CONTROLS)},
+    "MFV_ALONG_NOTHING": {f"MFV_ALONG_{name}": number for number, name in enumerate(_library.ALONG)},
     "MFV_LOWER": {f"MFV_{name.upper()}": number for number, name in enumerate(mfv.stress.BODIES)},
     "MFV_SIGMA_XX": {
         **{f"MFV_{name.upper()}": number for number, name in enumerate(mfv.stress.NAMES)},

@@ -235,7 +235,7 @@ static int read_options(int count, char **words) {
          (options.seconds > 0) + (options.cases > 0) + (options.one_case > 0) == 1;
 }
 
-/* The systems are small: a second thread of OpenBLAS costs more than it does (drivers/one_thread.f90). */
+/* The systems are small: a second thread of OpenBLAS costs more than it does (drivers/process.c). */
 static void use_one_thread_in_blas(void) {
   void (*set)(int) = (void (*)(int))dlsym(RTLD_DEFAULT, "openblas_set_num_threads");
   if (set != NULL) set(1);

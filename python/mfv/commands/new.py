@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Collection
 from pathlib import Path
 
+from .. import template
 from .._files import target, written
 from .completion import complete_files, complete_words
 
@@ -39,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="TEMPLATE",
         help=f"name of a template, see --list ({DEFAULT} by default); a name that ends in .nml is the file to write",
     )
-    complete_words(chosen, _templates)
+    complete_words(chosen, template.names)
     output = parser.add_argument("-o", "--output", type=Path, metavar="CASE.nml", help="file to write (default: TEMPLATE.nml)")
     complete_files(output, "nml")
     parser.add_argument("--list", action="store_true", help="list the templates")
@@ -48,8 +49,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Write the case and print how to solve it. Raises OSError, ValueError."""
-    from .. import template
-
     if options.list:
         for name, meaning in template.names().items():
             print(f"{name:18}{meaning}")
@@ -70,10 +69,3 @@ def _template_and_file(chosen: str, output: Path | None, names: Collection[str])
     if output is not None:
         raise ValueError(f"'{chosen}' is a file name and -o gives another; write 'python -m mfv new {name} -o {output}'")
     return name, path
-
-
-def _templates() -> list[str]:
-    """The names of the templates."""
-    from .. import template
-
-    return list(template.names())

@@ -6,6 +6,7 @@ import argparse
 
 from .._files import PICTURES, target, written
 from ..result import read
+from ..stress import NAMES
 from .completion import complete_words
 from .shared import add_output, add_result
 
@@ -45,7 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="draw contours of a stress inside a body: von_mises, tresca, principal_1, sigma_xx, ...",
     )
-    complete_words(stress, _stresses)
+    complete_words(stress, lambda: NAMES)
     kind.add_argument(
         "--cycles",
         action="store_true",
@@ -84,10 +85,3 @@ def run(options: argparse.Namespace) -> None:
     with written(output) as part:
         picture.savefig(part, dpi=200)
     print(output)
-
-
-def _stresses() -> tuple[str, ...]:
-    """The names of the stresses."""
-    from ..stress import NAMES
-
-    return NAMES

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
 from .._files import target, written
 from ..result import read
-from .shared import add_result, at_least, solved_between
+from .shared import add_output, add_result, at_least, solved_between
 
 NAME, HELP = "report", "write a result as one web page"
 
@@ -29,9 +28,7 @@ examples:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_result(parser)
-    parser.add_argument(
-        "-o", "--output", type=Path, metavar="PAGE.html", help="file to write (default: RESULT.html beside the file)"
-    )
+    add_output(parser, "PAGE.html", "file to write (default: RESULT.html beside the file)")
     parser.add_argument(
         "--states",
         type=at_least(2),

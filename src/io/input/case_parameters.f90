@@ -8,11 +8,11 @@ module mfv_case_parameters
    use mfv_derivatives, only: parameter_type
    use mfv_draft, only: draft_type, read_draft
    use mfv_error, only: error_type, set_error
+   use mfv_key_reader, only: check_groups, reader_type
    use mfv_keys, only: catalogue_type, kind_real, read_key_name
    use mfv_kinds, only: wp
    use mfv_motions, only: motions, user_motions, control_force, control_displacement
-   use mfv_namelist, only: group_type, parse_namelists
-   use mfv_numbers, only: read_real
+   use mfv_namelist, only: parse_namelists
    use mfv_body, only: shape_matrix
    use mfv_scene, only: algorithm_mfv, scene_type, stepping_leap
    use mfv_simulation, only: simulation_type
@@ -160,31 +160,22 @@ contains
       integer, intent(in) :: number
       real(wp), intent(out) :: value
       character(:), allocatable, intent(inout) :: why
-      type(group_type), allocatable :: groups(:)
+      type(reader_type) :: reader
       type(error_type), allocatable :: error
-      logical :: is_right
-      integer :: i, j, there
+      real(wp), allocatable :: values(:)
 
       value = 0.0_wp
-      why = 'is not set in the case; set it to a number'
-      call parse_namelists(case%text, case%source, groups, error)
-      if (allocated(error)) return
-      there = 0
-      do i = 1, size(groups)
-         if (groups(i)%name /= group) cycle
-         there = there + 1
-         if (there /= number) cycle
-         do j = 1, size(groups(i)%entries)
-            associate (entry => groups(i)%entries(j))
-               if (entry%key /= key) cycle
-               why = 'has several values'
-               if (size(entry%values) /= 1) return
-               call read_real(entry%values(1)%text, value, is_right)
-               why = ''
-               if (.not. is_right) why = 'is not a number'
-            end associate
-         end do
-      end do
+      reader%catalogue = case_catalogue()
+      call parse_namelists(case%text, case%source, reader%groups, error)
+      if (.not. allocated(error)) call check_groups(reader, error)
+      if (.not. allocated(error) .and. number > 0) call reader%real_values(group, number, key, values)
+      if (.not. allocated(values)) then
+         why = 'is not set in the case; set it to a number'
+      else if (size(values) /= 1) then
+         why = 'has several values'
+      else
+         value = values(1)
+      end if
    end subroutine find_value
 
    !> The model of the case with another value of a key, on the initial mesh of `model`.

@@ -31,11 +31,13 @@ module mfv_text_file
 
 contains
 
-   !> The bytes of a text file. Error MFV_INPUT_ERROR, naming the file, where it cannot be read or is too long for a text.
-   subroutine read_text(path, text, error)
+   !> The bytes of a file. Error MFV_INPUT_ERROR, naming the file, where it cannot be read or, without `any_length`, is too long for
+   !> a text; `text` is then not allocated.
+   subroutine read_text(path, text, error, any_length)
       character(*), intent(in) :: path
       character(:), allocatable, intent(out) :: text
       type(error_type), allocatable, intent(out) :: error
+      logical, intent(in), optional :: any_length
       character(len=256) :: why
       integer :: code, unit
       integer(int64) :: length
@@ -47,13 +49,14 @@ contains
       if (code == 0) then
          inquire (unit, size=length)
          length = max(length, 0_int64)
-         if (length > most_bytes) then
+         if (length > most_bytes .and. .not. present(any_length)) then
             call set_error(error, MFV_INPUT_ERROR, path//': too long; a text file may have at most '// &
                            to_text(int(most_bytes))//' bytes')
          else
             allocate (character(len=length) :: text, stat=code)
             why = 'out of memory'
             if (code == 0) read (unit, iostat=code, iomsg=why) text
+            if (code /= 0 .and. allocated(text)) deallocate (text)
          end if
          close (unit)
       end if

@@ -368,23 +368,19 @@ contains
       character(*), intent(in) :: name, meaning
       integer, intent(inout) :: values(:)
       integer, intent(in), optional :: least, most
-      real(wp), allocatable :: theirs(:)
+      real(wp), allocatable :: numbers(:)
+      logical :: damaged
 
-      if (allocated(self%error)) return
-      if (self%reading) then
-         call read_vector(self%file, self%group//'/'//self%prefix//name, size(values), theirs, self%error)
-         if (allocated(self%error)) return
-         if (any(abs(theirs) > real(huge(1), wp) + 1.0_wp)) then
-            call self%complain(name)
-            return
-         end if
-         values = nint(theirs)
-         if (present(least) .and. present(most)) then
-            if (any(values < least .or. values > most)) call self%complain(name)
-         end if
-      else
+      if (.not. self%reading) then
          call add_whole(self%fields, self%prefix//name, values, along_nothing, meaning)
+         return
       end if
+      numbers = real(values, wp)
+      call self%exchange(name, numbers, meaning)
+      damaged = any(abs(numbers) > real(huge(1), wp) + 1.0_wp)
+      if (.not. damaged) values = nint(numbers)
+      if (present(least) .and. present(most)) damaged = damaged .or. any(values < least .or. values > most)
+      if (damaged) call self%complain(name)
    end subroutine exchange_integers
 
    subroutine exchange_integer(self, name, value, meaning, least, most)

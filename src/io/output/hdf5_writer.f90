@@ -2,19 +2,23 @@
 !> earlier file unchanged. On a full disk HDF5 itself would end the process with a segmentation fault at exit.
 module mfv_hdf5_writer
    use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_null_char, c_null_ptr, c_ptr
-   use, intrinsic :: iso_fortran_env, only: int8, int64
+   use, intrinsic :: iso_fortran_env, only: int8
    use hdf5
+   use h5ds
    use mfv_error, only: error_type, set_error
    use mfv_hdf5_start, only: start_hdf5
-   use mfv_result_fields, only: along_nothing, field_type
+   use mfv_result_fields, only: along_nothing, field_named, field_type
    use mfv_safe_file, only: check_replaceable, replace_file
    use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
    use mfv_strings, only: to_text
-   use mfv_text_file, only: check_is_file
+   use mfv_text_file, only: read_text
    implicit none
    private
-   public :: writer_type, check_writable, create_file, read_bytes, open_copy, finish_file, create_group, write_dataset, &
-             write_text, write_hdf5_version, note
+   public :: writer_type, check_writable, create_file, open_copy, finish_file, create_group, write_group, &
+             write_text, write_hdf5_version, note, along_grid
+
+   !> A field along all scales of its group (see along_nothing in mfv_result_fields).
+   integer, parameter :: along_grid = -1
 
    !> An open file.
    type :: writer_type
@@ -24,7 +28,7 @@ module mfv_hdf5_writer
       !> Type and dataspace of every text attribute.
       integer(hid_t), private :: text_type = -1, scalar = -1
       !> Bytes that the file must still have when it is replaced, for a copy with additions.
-      integer(int8), allocatable, private :: expected(:)
+      character(:), allocatable, private :: expected
    end type writer_type
 
    !> Every result has this attribute of the root, and no other file.
@@ -98,7 +102,7 @@ contains
    !> Open a copy of a file, given by its `bytes`; it replaces the file if that is still unchanged.
    subroutine open_copy(path, bytes, writer)
       character(*), intent(in) :: path
-      integer(int8), intent(in), target :: bytes(:)
+      character(*), intent(in), target :: bytes
       type(writer_type), intent(out) :: writer
       integer(hid_t) :: access
       integer :: code
@@ -106,32 +110,13 @@ contains
       writer%expected = bytes
       call start_hdf5()
       call in_memory(access, writer)
-      call h5pset_file_image_f(access, c_loc(bytes), size(bytes, kind=size_t), code)
+      call h5pset_file_image_f(access, c_loc(bytes), len(bytes, kind=size_t), code)
       call note(writer, code)
       call h5fopen_f(path//in_memory_only, H5F_ACC_RDWR_F, writer%file, code, access_prp=access)
       call note(writer, code)
       call h5pclose_f(access, code)
       call make_text_type(writer)
    end subroutine open_copy
-
-   !> The bytes of a file; not allocated if it cannot be read.
-   subroutine read_bytes(path, bytes)
-      character(*), intent(in) :: path
-      integer(int8), allocatable, intent(out) :: bytes(:)
-      type(error_type), allocatable :: error
-      integer(int64) :: length
-      integer :: code, unit
-
-      call check_is_file(path, error)
-      if (allocated(error)) return
-      open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', iostat=code)
-      if (code /= 0) return
-      inquire (unit=unit, size=length)
-      allocate (bytes(length), stat=code)
-      if (code == 0) read (unit, iostat=code) bytes
-      close (unit)
-      if (code /= 0 .and. allocated(bytes)) deallocate (bytes)
-   end subroutine read_bytes
 
    !> Access properties of a file in memory; the caller closes them.
    subroutine in_memory(access, writer)
@@ -189,13 +174,14 @@ contains
    logical function has_changed(path, writer)
       character(*), intent(in) :: path
       type(writer_type), intent(in) :: writer
-      integer(int8), allocatable :: bytes(:)
+      character(:), allocatable :: bytes
+      type(error_type), allocatable :: error
 
       has_changed = allocated(writer%expected)
       if (.not. has_changed) return
-      call read_bytes(path, bytes)
+      call read_text(path, bytes, error, any_length=.true.)
       if (.not. allocated(bytes)) return
-      if (size(bytes) == size(writer%expected)) has_changed = any(bytes /= writer%expected)
+      if (len(bytes) == len(writer%expected)) has_changed = bytes /= writer%expected
    end function has_changed
 
    !> The bytes of the file in memory.
@@ -231,6 +217,46 @@ contains
       call note(writer, code)
       if (code == 0) call h5gclose_f(id, code)
    end subroutine create_group
+
+   !> A group with its own dimension scales: HDF5 limits the list of datasets of a scale to 64 KiB, too little for a long load
+   !> history. scales(i) is that of fields with along = i; fields with along_grid have all of them, the first one fastest.
+   subroutine write_group(writer, group, fields, scales)
+      type(writer_type), intent(inout) :: writer
+      character(*), intent(in) :: group
+      type(field_type), intent(in) :: fields(:), scales(:)
+      integer(hid_t) :: dataset, scale(size(scales))
+      integer :: code, i, j
+
+      call create_group(writer, group)
+      scale = -1
+      do i = 1, size(scales)
+         if (.not. any(fields%along == i .or. fields%along == along_grid)) cycle
+         call write_dataset(writer, group//'/'//scales(i)%name, scales(i), scale(i))
+         call h5dsset_scale_f(scale(i), code, scales(i)%name)
+         call note(writer, code)
+      end do
+      do i = 1, size(fields)
+         if (field_named(scales, fields(i)%name) > 0) cycle
+         if (fields(i)%along == along_grid) then
+            call write_dataset(writer, group//'/'//fields(i)%name, fields(i), dataset, &
+                               [(size(scales(j)%values), j=1, size(scales))])
+            do j = 1, size(scales)
+               call h5dsattach_scale_f(dataset, scale(size(scales) + 1 - j), j, code)
+               call note(writer, code)
+            end do
+         else
+            call write_dataset(writer, group//'/'//fields(i)%name, fields(i), dataset)
+            if (fields(i)%along > 0 .and. fields(i)%along <= size(scales)) then
+               call h5dsattach_scale_f(dataset, scale(fields(i)%along), 1, code)
+               call note(writer, code)
+            end if
+         end if
+         call h5dclose_f(dataset, code)
+      end do
+      do i = 1, size(scales)
+         if (scale(i) >= 0) call h5dclose_f(scale(i), code)
+      end do
+   end subroutine write_group
 
    !> Write a field at `path`, with its unit, description and flags; the dataset stays open. `shape`: its dimensions, the fastest
    !> first, if it has more than one.

@@ -2,7 +2,6 @@
 !> (docs/file-format.md). It replaces an earlier result only when complete.
 module mfv_result_file
    use hdf5
-   use h5ds
    use mfv_case, only: case_type
    use mfv_error, only: error_type, set_error
    use mfv_hdf5_reader, only: close_read, has, open_to_read, read_text_attribute
@@ -154,36 +153,5 @@ contains
          if (size(fields) > 0) scales(i) = fields(field_named(fields, trim(scale_name(i))))
       end do
    end subroutine find_scales
-
-   !> One group, with its own dimension scales: HDF5 limits the list of datasets of a scale to 64 KiB, too little for a long load
-   !> history.
-   subroutine write_group(writer, group, fields, scales)
-      type(writer_type), intent(inout) :: writer
-      character(*), intent(in) :: group
-      type(field_type), intent(in) :: fields(:), scales(:)
-      integer(hid_t) :: dataset, scale(size(scales))
-      integer :: code, i
-
-      call create_group(writer, group)
-      scale = -1
-      do i = 1, size(scales)
-         if (.not. any(fields%along == i)) cycle
-         call write_dataset(writer, group//'/'//scales(i)%name, scales(i), scale(i))
-         call h5dsset_scale_f(scale(i), code, scales(i)%name)
-         call note(writer, code)
-      end do
-      do i = 1, size(fields)
-         if (field_named(scales, fields(i)%name) > 0) cycle
-         call write_dataset(writer, group//'/'//fields(i)%name, fields(i), dataset)
-         if (fields(i)%along /= along_nothing) then
-            call h5dsattach_scale_f(dataset, scale(fields(i)%along), 1, code)
-            call note(writer, code)
-         end if
-         call h5dclose_f(dataset, code)
-      end do
-      do i = 1, size(scales)
-         if (scale(i) >= 0) call h5dclose_f(scale(i), code)
-      end do
-   end subroutine write_group
 
 end module mfv_result_file

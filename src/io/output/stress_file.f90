@@ -1,9 +1,7 @@
 !> Stresses inside the bodies of a result, added to its file under /stress/<state>/<body>, on a grid or at points.
 module mfv_stress_file
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
-   use, intrinsic :: iso_fortran_env, only: int8
    use hdf5
-   use h5ds
    use mfv_case, only: case_type
    use mfv_case_reader, only: read_case_text
    use mfv_error, only: error_type, set_error
@@ -16,7 +14,7 @@ module mfv_stress_file
    use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
    use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
    use mfv_strings, only: list_of_words, string_type
-   use mfv_text_file, only: path_from
+   use mfv_text_file, only: path_from, read_text
    implicit none
    private
    public :: stress_request_type, stress_result_type, add_stresses
@@ -57,9 +55,9 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(interior_type) :: interior
       type(case_type) :: case
-      integer(int8), allocatable :: bytes(:)
+      character(:), allocatable :: bytes
 
-      call read_bytes(path, bytes)
+      call read_text(path, bytes, error, any_length=.true.)
       call read_interior(path, request, case, interior, result, error)
       if (allocated(error)) then
          error%message = path//': '//error%message
@@ -86,16 +84,22 @@ contains
       type(stress_result_type), intent(inout) :: result
       type(error_type), allocatable, intent(out) :: error
       integer(hid_t) :: file
-      character(:), allocatable :: text, source, directory, state, position
+      character(:), allocatable :: text, source, directory, state, position, bulk_path
       !> Limit of numbers in a result; products of larger ones would overflow.
       real(wp), parameter :: largest_size = 1.0e100_wp
       real(wp), allocatable, dimension(:) :: arc, width, pressure, shear, contact_edge, stick_edge, bulk
+      real(wp) :: none
       logical :: available
 
       call open_to_read(path, file, error)
       if (allocated(error)) return
       state = 'state'
-      if (request%step > 0) state = step_group(request%step)
+      bulk_path = 'summary'
+      if (request%step > 0) then
+         state = step_group(request%step)
+         bulk_path = state
+      end if
+      bulk_path = bulk_path//'/'//trim(motions(bulk_motions(merge(2, 1, request%upper)))%key)
       call read_text_attribute(file, 'input', text, error)
       if (.not. allocated(error)) call read_text_attribute(file, 'input_file', source, error)
       if (.not. allocated(error)) call read_text_attribute(file, 'working_directory', directory, error)
@@ -108,9 +112,10 @@ contains
       if (.not. allocated(error)) call read_vector(file, 'mesh/width', size(arc), width, error)
       if (.not. allocated(error)) call read_vector(file, state//'/pressure', size(arc), pressure, error)
       if (.not. allocated(error)) call read_vector(file, state//'/shear', size(arc), shear, error)
-      if (.not. allocated(error)) call read_edges(file, state//'/contact_edge', size(arc), contact_edge, error)
-      if (.not. allocated(error)) call read_edges(file, state//'/stick_edge', size(arc), stick_edge, error)
-      if (.not. allocated(error)) call read_bulk(file, request, bulk, error)
+      none = ieee_value(1.0_wp, ieee_quiet_nan)
+      if (.not. allocated(error)) call read_or_default(file, state//'/contact_edge', size(arc), none, contact_edge, error, .true.)
+      if (.not. allocated(error)) call read_or_default(file, state//'/stick_edge', size(arc), none, stick_edge, error, .true.)
+      if (.not. allocated(error)) call read_or_default(file, bulk_path, 1, 0.0_wp, bulk, error)
       call close_read(file)
       if (.not. allocated(error)) then
          if (any(abs([arc, width, pressure, shear, bulk, pack(contact_edge,.not. ieee_is_nan(contact_edge)), &
@@ -127,38 +132,22 @@ contains
                                           'matrix: its stresses cannot be computed')
    end subroutine read_interior
 
-   !> Edges between nodes; NaN if the file has none.
-   subroutine read_edges(file, path, nodes, edges, error)
+   !> A finite vector, with `default` for every value if the file has none. `gaps`: NaN is allowed.
+   subroutine read_or_default(file, path, length, default, values, error, gaps)
       integer(hid_t), intent(in) :: file
       character(*), intent(in) :: path
-      integer, intent(in) :: nodes
-      real(wp), allocatable, intent(out) :: edges(:)
+      integer, intent(in) :: length
+      real(wp), intent(in) :: default
+      real(wp), allocatable, intent(out) :: values(:)
       type(error_type), allocatable, intent(inout) :: error
+      logical, intent(in), optional :: gaps
 
       if (has(file, path)) then
-         call read_vector(file, path, nodes, edges, error, gaps=.true.)
+         call read_vector(file, path, length, values, error, gaps)
       else
-         allocate (edges(nodes), source=ieee_value(1.0_wp, ieee_quiet_nan))
+         allocate (values(length), source=default)
       end if
-   end subroutine read_edges
-
-   !> The bulk stress of the body, shape (1); 0 if the file has none.
-   subroutine read_bulk(file, request, bulk, error)
-      integer(hid_t), intent(in) :: file
-      type(stress_request_type), intent(in) :: request
-      real(wp), allocatable, intent(out) :: bulk(:)
-      type(error_type), allocatable, intent(inout) :: error
-      character(:), allocatable :: path
-
-      path = 'summary/'
-      if (request%step > 0) path = step_group(request%step)//'/'
-      path = path//trim(motions(bulk_motions(merge(2, 1, request%upper)))%key)
-      if (has(file, path)) then
-         call read_vector(file, path, 1, bulk, error)
-      else
-         bulk = [0.0_wp]
-      end if
-   end subroutine read_bulk
+   end subroutine read_or_default
 
    !> lower or upper.
    pure function body_name(request) result(name)
@@ -205,12 +194,13 @@ contains
    !> Write the stresses to a copy of the file, which replaces it if it still has these `bytes`.
    subroutine write_stresses(path, bytes, request, case, result, error)
       character(*), intent(in) :: path
-      integer(int8), allocatable, intent(in) :: bytes(:)
+      character(:), allocatable, intent(in) :: bytes
       type(stress_request_type), intent(in) :: request
       type(case_type), intent(in) :: case
       type(stress_result_type), intent(inout) :: result
       type(error_type), allocatable, intent(out) :: error
       type(writer_type) :: writer
+      type(field_type), allocatable :: fields(:), scales(:)
       character(:), allocatable :: state
 
       if (.not. allocated(bytes)) then
@@ -226,14 +216,15 @@ contains
       if (allocated(request%x)) result%group = result%group//'_points'
       call open_copy(path, bytes, writer)
       if (writer%code == 0) then
-         call renew_group(writer, state, result%group)
-         call write_group(writer, case, result)
+         call remove_group(writer, state, result%group)
+         call collect_fields(case, result, fields, scales)
+         call write_group(writer, result%group, fields, scales)
       end if
       call finish_file(path, 'the stresses', writer, error)
    end subroutine write_stresses
 
-   !> Create the group and its parents, without earlier stresses.
-   subroutine renew_group(writer, state, group)
+   !> Remove earlier stresses, and create the parents of their group.
+   subroutine remove_group(writer, state, group)
       type(writer_type), intent(inout) :: writer
       character(*), intent(in) :: state, group
       integer :: code
@@ -244,59 +235,28 @@ contains
          call h5ldelete_f(writer%file, group, code)
          call note(writer, code)
       end if
-      call create_group(writer, group)
-   end subroutine renew_group
+   end subroutine remove_group
 
-   !> The stresses in their group; over a grid with its dimension scales.
-   subroutine write_group(writer, case, result)
-      type(writer_type), intent(inout) :: writer
+   !> The fields of a group, and the dimension scales of a grid.
+   subroutine collect_fields(case, result, fields, scales)
       type(case_type), intent(in) :: case
       type(stress_result_type), intent(in) :: result
-      type(field_type), allocatable :: scales(:), fields(:)
-      integer(hid_t) :: scale(2), dataset
-      integer :: code, i, j
-
-      allocate (scales(0))
-      call add_real(scales, 'x', result%x, along_nodes, case%length_unit, 'position to the right of the origin')
-      if (allocated(result%depth)) &
-         call add_real(scales, 'depth', result%depth, along_nodes, case%length_unit, 'depth below the surface')
-      do i = 1, size(scales)
-         call write_dataset(writer, result%group//'/'//scales(i)%name, scales(i), scale(i))
-         if (size(scales) == 2) call h5dsset_scale_f(scale(i), code, scales(i)%name)
-      end do
-      call collect_fields(case, result, fields)
-      do i = 1, size(fields)
-         associate (path => result%group//'/'//fields(i)%name)
-            if (fields(i)%along == along_nothing .or. size(scales) == 1) then
-               call write_dataset(writer, path, fields(i), dataset)
-            else
-               call write_dataset(writer, path, fields(i), dataset, [size(result%x), size(result%depth)])
-               do j = 1, 2
-                  call h5dsattach_scale_f(dataset, scale(3 - j), j, code)
-                  call note(writer, code)
-               end do
-            end if
-         end associate
-         call h5dclose_f(dataset, code)
-      end do
-      do i = 1, size(scales)
-         call h5dclose_f(scale(i), code)
-      end do
-   end subroutine write_group
-
-   !> The fields besides the scales.
-   subroutine collect_fields(case, result, fields)
-      type(case_type), intent(in) :: case
-      type(stress_result_type), intent(in) :: result
-      type(field_type), allocatable, intent(out) :: fields(:)
+      type(field_type), allocatable, intent(out) :: fields(:), scales(:)
       type(string_type), allocatable :: names(:)
-      integer :: i
+      integer :: along, i
 
-      allocate (fields(0))
+      allocate (fields(0), scales(0))
+      along = along_nodes
+      call add_real(fields, 'x', result%x, along_nodes, case%length_unit, 'position to the right of the origin')
+      if (allocated(result%depth)) then
+         along = along_grid
+         scales = fields
+         call add_real(scales, 'depth', result%depth, along_nodes, case%length_unit, 'depth below the surface')
+      end if
       names = list_of_words(stress_names)
-      call add_real(fields, 'y', result%y, along_nodes, case%length_unit, 'height above the origin')
+      call add_real(fields, 'y', result%y, along, case%length_unit, 'height above the origin')
       do i = 1, stress_count
-         call add_real(fields, names(i)%text, result%stress(i, :), along_nodes, result%stress_unit, trim(meaning(names(i)%text)))
+         call add_real(fields, names(i)%text, result%stress(i, :), along, result%stress_unit, trim(meaning(names(i)%text)))
          if (names(i)%text == 'principal_angle') fields(size(fields))%unit = '1'
       end do
       call add('largest_von_mises', result%largest%value, result%stress_unit, 'largest von Mises stress in the body, by refinement')

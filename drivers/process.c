@@ -1,0 +1,37 @@
+/* The standard streams, signals and threads of a program. In C because open flags and signal numbers depend on the system. */
+#define _DEFAULT_SOURCE /* signal installs a handler for good */
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <unistd.h>
+
+/* Call this first. A standard stream that the caller has closed is opened on /dev/null; otherwise the next file, such as a result,
+   would get its number and receive the summary. Printing then fails, and messages are lost. A file-size limit becomes an error of
+   the writing call instead of a signal. */
+void mfv_begin_streams(void) {
+  int descriptor;
+  for (descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; descriptor++)
+    if (fcntl(descriptor, F_GETFD) < 0 && errno == EBADF) open("/dev/null", descriptor == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+  signal(SIGXFSZ, SIG_IGN);
+}
+
+/* One thread for OpenBLAS: a second one slows small systems down and changes the last digits of sums. The programs set this
+   whatever OPENBLAS_NUM_THREADS says; the library leaves it to its host. No effect with another BLAS. */
+void mfv_use_one_thread(void) {
+  void (*set)(int) = (void (*)(int))dlsym(dlopen(NULL, RTLD_LAZY), "openblas_set_num_threads");
+  if (set != NULL) set(1);
+}
+
+static volatile sig_atomic_t interrupted;
+
+static void handle_signal(int number) { interrupted = number; }
+
+/* Have Ctrl-C and termination requests end the run at its next increment, with its result written. */
+void mfv_catch_interrupts(void) {
+  signal(SIGINT, handle_signal);
+  signal(SIGTERM, handle_signal);
+}
+
+/* Whether the program has been asked to end. */
+int mfv_is_interrupted(void) { return interrupted != 0; }
