@@ -150,7 +150,7 @@ contains
       call make_chain(path, interval, 1, start, chain)
       if (.not. chain%found) return
       accepted = .not. (may_depend_on_path(path, interval) .or. any(slips(chain%before(1)%status)) .or. &
-                        has_shear(path, chain%after(1)))
+                        has_shear(path, chain%after(1))) .or. slips_one_way(path, interval)
       if (accepted .or. chain%start_error > path%model%scene%method%accuracy &
           *max(path%certificate%traction_scale, chain%traction)) return
       increments = 2
@@ -365,6 +365,16 @@ contains
       has_constant_pressures = .not. path%model%compliance%has_block(block_wt) .and. .not. path%model%has_rigid_parts() .and. &
                                .not. any(abs(segment%load%rate) > 0.0_wp .and. normal)
    end function has_constant_pressures
+
+   !> Whether nodes slip in the direction of the load only, and one increment is therefore exact: on half-planes under constant
+   !> pressures. The rates are those under rigid punches, the stick zones, that move together. By the maximum principle of the
+   !> logarithmic potential the shear traction of every stick zone grows everywhere, and the surface beside it moves less than it.
+   logical function slips_one_way(path, interval)
+      class(contact_path_type), intent(in) :: path
+      type(segment_type), intent(in) :: interval
+
+      slips_one_way = path%model%compliance%is_half_plane .and. has_constant_pressures(path, interval)
+   end function slips_one_way
 
    !> Statuses of the nodes at the friction limit for the given rates, as `wanted`, shape (nodes): nodes that slip back stick, and
    !> stuck nodes slip whose shear traction grows faster than the limit.
