@@ -2,11 +2,13 @@
 
     PYTHONPATH=python python bench/large_increments.py cycles 100
     PYTHONPATH=python python bench/large_increments.py random 250 1e-3
+    PYTHONPATH=python python bench/large_increments.py nonlinear 24 1e-2
 
 The first prints, for some tolerances, the linear solves and the largest error of what a cycle dissipates. The second compares
 tractions and the dissipation of every load segment in random scenes of Coulomb friction: couplings, materials, disks and a flat
 punch, 101 to 401 nodes, pressing with friction, oblique loads, cycles of either force, unloading, prescribed displacements. It
-prints the scenes above the tolerance, and how often the estimated errors bound the true ones.
+prints the scenes above the tolerance, and how often the estimated errors bound the true ones. The third compares random scenes of
+Dahl's law and of weakening with much shorter increments.
 """
 
 from __future__ import annotations
@@ -179,8 +181,54 @@ def study_random(scenes: int, tolerance: float) -> None:
                   f"{100 * np.mean(ratio >= 1 / 3):.0f} % by no more than three times that; median estimate/error {np.median(ratio):.1f}")  # fmt: skip
 
 
+def nonlinear_scene(seed: int, solver: Solver) -> Scene:
+    """Scene number `seed` of Dahl's law (even numbers) or of weakening: a rigid disk, pressed, sheared in cycles, then obliquely."""
+    draw = np.random.default_rng(seed)
+    mu, poisson, force = float(draw.uniform(0.1, 0.8)), float(draw.choice([0.0, 0.2, 0.3])), 0.01
+    coupling, nodes = str(draw.choice(["full", "none"])), int(draw.choice([41, 61, 81]))
+    if seed % 2 == 0:
+        stiffness, exponent = mu * 10 ** draw.uniform(1, 2.5), draw.choice([0.5, 1, 1, 2])
+        friction = Friction.dahl(mu, stiffness=float(stiffness), exponent=float(exponent))
+    else:
+        kinetic, distance = mu * draw.uniform(0.6, 0.95), 10 ** draw.uniform(-2.5, -1.2)
+        friction = Friction.weakening(mu, float(kinetic), distance=float(distance))
+    shear = float(draw.uniform(0.2, 0.7)) * mu * force
+    steps = [Step(normal_force=force, friction=bool(draw.random() < 0.6)), Step(tangential_force=shear)]
+    steps.append(Step(tangential_force=-shear * float(draw.uniform(0.3, 1)), cycles=2))
+    if draw.random() < 0.4:
+        later = {"normal_force": draw.uniform(0.6, 1.4) * force, "tangential_force": draw.uniform(-0.5, 0.8) * shear}
+        steps.append(Step(**{key: float(value) for key, value in later.items()}))
+    return Scene(
+        Body.half_plane(shear_modulus=1.0, poisson_ratio=poisson),
+        Body.disk(1.0, rigid=True),
+        mesh=Mesh(nodes=nodes),
+        friction=friction,
+        steps=steps,
+        coupling=coupling,
+        solver=solver,
+        output=Output(history="steps"),
+    )
+
+
+def study_nonlinear(scenes: int, accuracy: float) -> None:
+    rows: dict[str, list[tuple[float, float]]] = {"dahl": [], "weakening": []}
+    for seed in range(scenes):
+        exact = nonlinear_scene(seed, Solver(friction_tolerance=1e-6)).run()
+        result = nonlinear_scene(seed, Solver(accuracy=accuracy)).run()
+        if {exact.outcome, result.outcome} != {"complete"}:
+            print(f"scene {seed}: {exact.outcome}, {result.outcome}")
+            continue
+        rows["weakening" if seed % 2 else "dahl"].append(differences(exact, result, 0.0))
+    for law, errors in rows.items():
+        table = np.array(errors) / accuracy
+        print(f"{law}: largest and median error over the accuracy: tractions {table[:, 0].max():.2f}, {np.median(table[:, 0]):.2f}; "
+              f"dissipation of a segment {table[:, 1].max():.2f}, {np.median(table[:, 1]):.2f}")  # fmt: skip
+
+
 if __name__ == "__main__":
     if sys.argv[1] == "cycles":
         study_cycles(int(sys.argv[2]))
+    elif sys.argv[1] == "nonlinear":
+        study_nonlinear(int(sys.argv[2]), float(sys.argv[3]))
     else:
         study_random(int(sys.argv[2]), float(sys.argv[3]))

@@ -40,9 +40,6 @@ module mfv_advice
 
    !> Relative residual of an iterative solver over the given error; at least the default.
    real(wp), parameter :: tolerance_part = 1.0e-3_wp
-   !> Tolerance of nonlinear friction laws over the given error: their error is about a sixth of the tolerance
-   !> (docs/verification.md).
-   real(wp), parameter :: friction_tolerance_part = 0.3_wp
    !> Tolerance of large increments over the given error: their error is proportional to it.
    real(wp), parameter :: accuracy_part = 0.1_wp
 
@@ -355,7 +352,7 @@ contains
       advice%linear_solver = cheapest_solver(unknowns)
       advice%linear_tolerance = max(tolerance_part*advice%wanted_error, usual%linear_tolerance)
       advice%accuracy = accuracy_part*advice%wanted_error
-      advice%friction_tolerance = min(friction_tolerance_part*advice%wanted_error, scene%method%friction_tolerance)
+      advice%friction_tolerance = min(friction_tolerance_part*advice%wanted_error, scene%method%allowed_in_friction())
       advice%solves = law%solves*(advice%contact_nodes/law%nodes)**law%growth
       advice%seconds = advice%solves*seconds_of_solve(advice%linear_solver, unknowns)
    end subroutine choose_solver

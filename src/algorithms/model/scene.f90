@@ -15,7 +15,7 @@ module mfv_scene
    public :: scene_type, mesh_request_type, step_type, method_type, control_keep, control_force, control_displacement, &
              most_cycles, algorithm_mfv, algorithm_conventional, stepping_event, stepping_nominal, stepping_leap, stepping_auto, &
              integration_second_order, integration_explicit, solver_auto, solver_dgesv, solver_reduced, solver_fft, &
-             algorithm_names, stepping_names, integration_names, solver_names
+             algorithm_names, stepping_names, integration_names, solver_names, friction_tolerance_part
 
    !> The Method of First Violation (dissertation section 2.3) or the conventional algorithm (2.2). Names here and below: values of
    !> the keys of &solver, in the order of the numbers.
@@ -66,8 +66,9 @@ module mfv_scene
       !> The nominal load step dL0 of nominal stepping, the conventional algorithm and explicit integration, as a fraction of each
       !> load segment.
       real(wp) :: load_step = 0.05_wp
-      !> Tolerance of the tractions for an increment with nonlinear friction, relative to the largest traction.
-      real(wp) :: friction_tolerance = 1.0e-4_wp
+      !> Tolerance of the tractions for an increment with nonlinear friction, relative to the largest traction; 0: see
+      !> allowed_in_friction.
+      real(wp) :: friction_tolerance = 0.0_wp
       !> Most iterations of the conventional algorithm at one load.
       integer :: most_iterations = 1000
       integer :: linear_solver = solver_auto
@@ -79,7 +80,12 @@ module mfv_scene
    contains
       procedure :: takes_accuracy
       procedure :: allowed_residual
+      procedure :: allowed_in_friction
    end type method_type
+
+   !> Part of the wanted error of dissipation that an increment with nonlinear friction may have in its tractions: that of the
+   !> dissipation of load segments is about five times as large, and up to 13 times (docs/verification.md).
+   real(wp), parameter :: friction_tolerance_part = 0.1_wp
 
    !> Mesh settings of the user; what is not set is chosen from an estimate of the contact.
    type :: mesh_request_type
@@ -168,6 +174,16 @@ contains
       allowed_residual = 0.0_wp
       if (self%stepping == stepping_leap) allowed_residual = negligible*self%accuracy
    end function allowed_residual
+
+   !> The tolerance of the tractions for an increment with nonlinear friction: the given one, else that of the accuracy, if any.
+   elemental real(wp) function allowed_in_friction(self) result(tolerance)
+      class(method_type), intent(in) :: self
+      real(wp), parameter :: usual = 1.0e-4_wp
+
+      tolerance = usual
+      if (self%accuracy > 0.0_wp) tolerance = friction_tolerance_part*self%accuracy
+      if (self%friction_tolerance > 0.0_wp) tolerance = self%friction_tolerance
+   end function allowed_in_friction
 
    !> Whether the scene requires the tangential problem: a friction law, and a step in which it acts. A scene without steps may get
    !> such steps later.

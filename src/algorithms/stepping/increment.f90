@@ -142,7 +142,7 @@ contains
       touched = any(creeps(path%state%status) .and. .not. path%state%fields%pressure > 0.0_wp)
       if (increment%step <= shortest_step(path) .and. .not. touched) return
       if (.not. path%trial > 0.0_wp) path%trial = first_trial
-      tolerance = path%model%scene%method%friction_tolerance
+      tolerance = path%model%scene%method%allowed_in_friction()
       predicted = increment
       length = min(left, path%trial)
       do attempt = 1, most_attempts

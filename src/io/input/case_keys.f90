@@ -229,7 +229,8 @@ contains
       call keys%add('solver', 'algorithm', kind_choice, 'mfv: Method of First Violation; conventional: load steps with '// &
                     'corrections of node statuses, for comparison', default='mfv', choices=algorithm_names)
       call keys%add('solver', 'accuracy', kind_real, 'allowed error of large increments: of the tractions, relative to the '// &
-                    'largest traction, and of the dissipation of each load segment, relative to it; 0: every event is followed', &
+                    'largest traction, and of the dissipation of each load segment, relative to it; 0: every event is '// &
+                    'followed; dahl, weakening: see friction_tolerance', &
                     default='0', lower=0.0_wp, upper=0.1_wp)
       call keys%add('solver', 'stepping', kind_choice, "algorithm='mfv': events found from rates (event), or from trial load "// &
                     'steps and interpolation (nominal), with the same states (coulomb, static_kinetic); large increments '// &
@@ -240,7 +241,7 @@ contains
       call keys%add('solver', 'integration', kind_choice, 'dahl: second order with controlled error, or explicit with '// &
                     'load_step (appendix B)', default='second_order', choices=integration_names)
       call add_part_key(keys, 'friction_tolerance', '1e-4', 'dahl, weakening: error allowed in an increment, relative to the '// &
-                        'largest traction')
+                        'largest traction; with accuracy above 0 by default a tenth of it')
       call keys%add('solver', 'iterations', kind_integer, 'conventional: largest number of status corrections at one '// &
                     'load', default='1000', &
                     lower=1.0_wp, upper=1.0e6_wp)

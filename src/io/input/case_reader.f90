@@ -168,7 +168,8 @@ contains
       method%accuracy = reader%real_value('solver', 1, 'accuracy')
       method%integration = reader%choice('solver', 1, 'integration')
       method%load_step = reader%real_value('solver', 1, 'load_step')
-      method%friction_tolerance = reader%real_value('solver', 1, 'friction_tolerance')
+      if (reader%has('solver', 1, 'friction_tolerance')) &
+         method%friction_tolerance = reader%real_value('solver', 1, 'friction_tolerance')
       method%most_iterations = reader%integer_value('solver', 1, 'iterations')
    end subroutine read_method
 
