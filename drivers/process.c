@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 /* Call this first. A standard stream that the caller has closed is opened on /dev/null; otherwise the next file, such as a result,
@@ -22,6 +23,11 @@ void mfv_use_one_thread(void) {
   void (*set)(int) = (void (*)(int))dlsym(dlopen(NULL, RTLD_LAZY), "openblas_set_num_threads");
   if (set != NULL) set(1);
 }
+
+#ifdef __ELF__
+/* OpenBLAS that is linked statically starts its threads, which spin for some milliseconds, before main; this runs before that. */
+__attribute__((constructor(101))) static void start_one_thread(void) { setenv("OPENBLAS_NUM_THREADS", "1", 1); }
+#endif
 
 static volatile sig_atomic_t interrupted;
 
