@@ -24,7 +24,7 @@ function(mfv_add_suite)
     mfv_add_standin_executable(${arg_NAME} "${arg_SOURCES}" ${arg_LIBRARIES})
     add_test(NAME ${arg_NAME} COMMAND ${arg_NAME})
   endif()
-  # A suite runs once: to optimise it takes longer than that saves.
+  # Optimising takes longer than it saves: a suite runs once.
   target_compile_options(${arg_NAME} PRIVATE $<$<COMPILE_LANG_AND_ID:Fortran,GNU>:-O0>)
   set_tests_properties(${arg_NAME} PROPERTIES TIMEOUT 600 LABELS "${arg_LABELS}")
 endfunction()

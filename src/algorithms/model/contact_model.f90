@@ -22,8 +22,8 @@ module mfv_contact_model
    use mfv_scene_indenter, only: indenter_of, largest_half_width
    implicit none
    private
-  public :: contact_model_type, new_contact_model, adapt_model, choose_mesh, can_choose_mesh, has_touchable_node, intervals_round, &
-             needs_equal_intervals
+   public :: contact_model_type, new_contact_model, adapt_model, choose_mesh, can_choose_mesh, has_touchable_node, &
+             intervals_round, needs_equal_intervals
 
    type :: contact_model_type
       type(scene_type) :: scene

@@ -7,8 +7,8 @@
 !>
 !> If friction is not linear (Dahl, weakening), a predictor with tangents is followed by a corrector (Newton) until the friction
 !> lines agree with the end of the increment; for Dahl's law this is the implicit midpoint rule, of second order. The difference of
-!> predictor and corrector estimates a first-order error. The increment is shortened until it is within `friction_tolerance`, so
-!> that the error of the result decreases with the tolerance.
+!> predictor and corrector estimates a first-order error. The increment is shortened until it is within the method's
+!> `allowed_in_friction`, so that the error of the result decreases with the tolerance.
 module mfv_increment
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path, only: contact_path_type

@@ -41,15 +41,18 @@ contains
       character(len=256) :: why
       integer :: code, unit
       integer(int64) :: length
+      logical :: is_any
 
       call check_is_file(path, error)
       if (allocated(error)) return
+      is_any = .false.
+      if (present(any_length)) is_any = any_length
       open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', &
             iostat=code, iomsg=why)
       if (code == 0) then
          inquire (unit, size=length)
          length = max(length, 0_int64)
-         if (length > most_bytes .and. .not. present(any_length)) then
+         if (length > most_bytes .and. .not. is_any) then
             call set_error(error, MFV_INPUT_ERROR, path//': too long; a text file may have at most '// &
                            to_text(int(most_bytes))//' bytes')
          else
