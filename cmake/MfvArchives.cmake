@@ -2,8 +2,8 @@
 # these are not installed or cannot be linked; the programs then use shared libraries. Debian's shared HDF5 loads some 35 further
 # libraries (curl, Kerberos, LDAP), which takes 7 ms at every start; they serve parts of HDF5 that the programs do not use.
 #
-# MFV_OPENBLAS_OPTIONS: options with which mfv_run is linked if OpenBLAS and gfortran's library are static in it too, which adds 26 MB
-# and saves 1 ms; else empty.
+# MFV_OPENBLAS_OPTIONS: the option with which mfv_run is linked if OpenBLAS and gfortran's library are static in it too, which adds
+# 26 MB and saves 1 ms; else empty.
 include(CheckSourceCompiles)
 
 # The archives beside the shared libraries. OpenBLAS precedes GSL's own CBLAS, as it does with shared libraries.
@@ -51,13 +51,13 @@ if(NOT MFV_ARCHIVES_WORK)
   set(MFV_ARCHIVES)
 endif()
 
-# OpenBLAS beside the shared library. The programs look for a procedure of it by name.
+# OpenBLAS beside the shared library.
 set(MFV_OPENBLAS_OPTIONS)
 list(FILTER lapack INCLUDE REGEX "/libopenblas\\${CMAKE_SHARED_LIBRARY_SUFFIX}$")
 list(REMOVE_DUPLICATES lapack)
 string(REGEX REPLACE "\\${CMAKE_SHARED_LIBRARY_SUFFIX}$" ".a" openblas "${lapack}")
 if(MFV_ARCHIVES AND lapack AND EXISTS "${openblas}" AND CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
-  set(options -static-libgfortran LINKER:--export-dynamic-symbol=openblas_set_num_threads)
+  set(options -static-libgfortran)
   string(REPLACE "${lapack}" "${openblas}" archives "${MFV_ARCHIVES}")
   set(CMAKE_REQUIRED_LINK_OPTIONS ${options})
   mfv_check_archives(MFV_STATIC_OPENBLAS_WORKS ${archives})

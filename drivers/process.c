@@ -25,7 +25,7 @@ void mfv_use_one_thread(void) {
 }
 
 #ifdef __ELF__
-/* OpenBLAS that is linked statically starts its threads, which spin for some milliseconds, before main; this runs before that. */
+/* The same for OpenBLAS that is linked statically: it starts its threads, which spin for some milliseconds, before main. */
 __attribute__((constructor(101))) static void start_one_thread(void) { setenv("OPENBLAS_NUM_THREADS", "1", 1); }
 #endif
 

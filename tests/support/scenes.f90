@@ -10,7 +10,8 @@ module test_scenes
    use mfv_simulation, only: history_events, new_simulation, simulation_type
    implicit none
    private
-   public :: body, two_bodies, cylinder, flat_punch, press, shear, solved, radius, shear_modulus, poisson_ratio
+   public :: body, two_bodies, cylinder, flat_punch, press, shear, solved, dissipation_by_segments, radius, &
+             shear_modulus, poisson_ratio
 
    !> Dissertation section 3.1: R = 0.25, G = 1, nu = 0.3.
    real(wp), parameter :: radius = 0.25_wp, shear_modulus = 1.0_wp, poisson_ratio = 0.3_wp
@@ -131,5 +132,17 @@ contains
       simulation = new_simulation(scene, history_events)
       call simulation%run()
    end function solved
+
+   !> Dissipation of each load segment whose end is kept, force.
+   function dissipation_by_segments(simulation) result(dissipation)
+      type(simulation_type), intent(in) :: simulation
+      real(wp), allocatable :: dissipation(:)
+      integer :: i
+
+      associate (s => simulation%snapshots(:simulation%snapshot_count))
+         dissipation = [(s(i)%state%dissipation, i=1, size(s))]
+         dissipation(2:) = dissipation(2:) - [(s(i)%state%dissipation, i=1, size(s) - 1)]
+      end associate
+   end function dissipation_by_segments
 
 end module test_scenes

@@ -5,10 +5,9 @@ module mfv_observables
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
-   use mfv_interior, only: has_interior, interior_type
+   use mfv_interior, only: interior_type
    use mfv_kinds, only: pi, wp
    use mfv_motions, only: bulk_motions, motions, motion_count => user_motions, motion_approach
-   use mfv_scene, only: scene_type
    use mfv_simulation, only: mark_loading, simulation_type
    use mfv_state_interior, only: state_interior
    use mfv_stress_search, only: largest_tension, largest_type
@@ -155,7 +154,8 @@ contains
       logical :: available
 
       associate (model => simulation%contact%model, state => simulation%contact%state)
-         if (only_bulk_stretches(model%scene, upper, state%fields%shear)) then
+         ! Pressure only compresses a straight surface.
+         if (model%scene%can_have_bulk_stress(upper) .and. .not. any(abs(state%fields%shear) > 0.0_wp)) then
             call put(values, name//'_tension', max(state%fields%motion(bulk_motions(merge(2, 1, upper))), 0.0_wp))
             return
          end if
@@ -166,20 +166,6 @@ contains
       call put(values, name//'_tension', largest%value)
       call put(values, name//'_tension_x', largest%x)
    end subroutine add_tension
-
-   !> Whether the surface of a body is straight and free of shear: pressure only compresses it.
-   pure logical function only_bulk_stretches(scene, upper, shear)
-      type(scene_type), intent(in) :: scene
-      logical, intent(in) :: upper
-      real(wp), intent(in) :: shear(:)
-
-      if (upper) then
-         only_bulk_stretches = has_interior(scene%upper) .and. .not. scene%upper%circular()
-      else
-         only_bulk_stretches = has_interior(scene%lower) .and. .not. scene%lower%circular()
-      end if
-      only_bulk_stretches = only_bulk_stretches .and. .not. any(abs(shear) > 0.0_wp)
-   end function only_bulk_stretches
 
    !> Observables of the last cycle.
    subroutine add_cycle(simulation, cycle, values)

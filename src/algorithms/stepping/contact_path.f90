@@ -229,6 +229,7 @@ contains
       type(path_position_type), intent(in) :: position
       integer, intent(in) :: added
 
+      ! In parentheses: copies, since the model may be replaced.
       call adapt_model(self%model, added, (self%model%tangential), (self%model%moves))
       self%path_position_type = position
       call self%model%set_worn(self%state%worn)

@@ -216,7 +216,7 @@ contains
       if (allocated(request%x)) result%group = result%group//'_points'
       call open_copy(path, bytes, writer)
       if (writer%code == 0) then
-         call remove_group(writer, state, result%group)
+         call prepare_group(writer, state, result%group)
          call collect_fields(case, result, fields, scales)
          call write_group(writer, result%group, fields, scales)
       end if
@@ -224,7 +224,7 @@ contains
    end subroutine write_stresses
 
    !> Remove earlier stresses, and create the parents of their group.
-   subroutine remove_group(writer, state, group)
+   subroutine prepare_group(writer, state, group)
       type(writer_type), intent(inout) :: writer
       character(*), intent(in) :: state, group
       integer :: code
@@ -235,7 +235,7 @@ contains
          call h5ldelete_f(writer%file, group, code)
          call note(writer, code)
       end if
-   end subroutine remove_group
+   end subroutine prepare_group
 
    !> The fields of a group, and the dimension scales of a grid.
    subroutine collect_fields(case, result, fields, scales)
