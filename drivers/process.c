@@ -3,6 +3,9 @@
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <signal.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -25,8 +28,16 @@ void mfv_use_one_thread(void) {
 }
 
 #ifdef __ELF__
-/* The same for OpenBLAS that is linked statically: it starts its threads, which spin for some milliseconds, before main. */
-__attribute__((constructor(101))) static void start_one_thread(void) { setenv("OPENBLAS_NUM_THREADS", "1", 1); }
+/* The same for OpenBLAS that is linked statically: it starts its threads, which spin for some milliseconds, before main.
+   With glibc, freed memory is kept: arrays along the nodes come and go, and new pages cost more than the arithmetic on them. */
+__attribute__((constructor(101))) static void start_process(void) {
+  setenv("OPENBLAS_NUM_THREADS", "1", 1);
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 1 << 25);
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+  mallopt(M_TOP_PAD, 1 << 20);
+#endif
+}
 #endif
 
 static volatile sig_atomic_t interrupted;

@@ -43,12 +43,12 @@ contains
    !> own input also accepts 2*3 (two numbers) and 1.5+3 (1500).
    pure logical function is_plain(text)
       character(*), intent(in) :: text
-      character(*), parameter :: letters = 'eEdD', signs = '+-'
+      character(*), parameter :: letters = 'eEdD'
       integer :: i
 
-      is_plain = verify(text, '0123456789.'//signs//letters) == 0
+      is_plain = verify(text, '0123456789.+-'//letters) == 0
       do i = 2, len(text)
-         if (scan(text(i:i), signs) > 0) is_plain = is_plain .and. scan(text(i - 1:i - 1), letters) > 0
+         if (text(i:i) == '+' .or. text(i:i) == '-') is_plain = is_plain .and. scan(text(i - 1:i - 1), letters) > 0
       end do
    end function is_plain
 

@@ -208,9 +208,12 @@ contains
    !> (1+r) ln(1+r) + (1-r) ln(1-r), with sign 1 and 1/r^2 the difference of log_kernel to 2 ln(r) + 2.
    pure real(wp) function series(square, sign) result(total)
       real(wp), intent(in) :: square, sign
-      integer, parameter :: terms = 26
-      integer :: k
+      integer :: k, terms
 
+      ! Enough for round-off; most pairs of nodes are far apart.
+      terms = 26
+      if (square < 1.0e-2_wp) terms = 8
+      if (square < 1.0e-4_wp) terms = 4
       total = 0.0_wp
       do k = terms, 1, -1
          total = (total + 1.0_wp/(k*(2.0_wp*k + sign)))*square

@@ -61,7 +61,13 @@ contains
       do j = 1, size(from)
          middle = 0.5_wp*(from(j) + to(j)) - x
          half = 0.5_wp*(to(j) - from(j))
-         if (abs(middle) > 5.0_wp*half) then
+         if (abs(middle) > 100.0_wp*half) then
+            ! Four terms of the series below.
+            ratio = half/middle
+            square = ratio**2
+            tilted = -square*(2.0_wp/3.0_wp + square*(2.0_wp/5.0_wp + square*(2.0_wp/7.0_wp + square*(2.0_wp/9.0_wp))))
+            growth = ratio*(2.0_wp - tilted)
+         else if (abs(middle) > 5.0_wp*half) then
             ratio = half/middle
             square = ratio**2
             power = 1.0_wp
