@@ -11,6 +11,8 @@ module mfv_numbers
 
    !> Accepted magnitudes, in any unit; outside, squares and products overflow or underflow.
    real(wp), parameter :: smallest_size = 1.0e-100_wp, largest_size = 1.0e100_wp
+   !> Before an exponent.
+   character(*), parameter :: letters = 'eEdD'
    character(*), parameter :: reasonable_sizes = 'numbers other than 0 must have a magnitude from 1e-100 to 1e100'
 
 contains
@@ -21,19 +23,24 @@ contains
       real(wp), intent(out) :: value
       logical, intent(out) :: is_right
       type(ieee_flag_type), parameter :: of_reading(3) = [ieee_overflow, ieee_underflow, ieee_inexact]
-      logical :: halts(3), flags(3)
+      logical :: halts(3), flags(3), is_extreme
       integer :: code
 
       value = 0.0_wp
       is_right = is_plain(text)
       if (.not. is_right) return
-      ! 1e400 raises an overflow, which must not end a program that traps it.
-      call ieee_get_halting_mode(of_reading, halts)
-      call ieee_get_flag(of_reading, flags)
-      call ieee_set_halting_mode(of_reading, .false.)
+      ! 1e400 raises an overflow, which must not end a program that traps it; setting modes takes longer than reading.
+      is_extreme = scan(text, letters) > 0 .or. len(text) > maxexponent(value)/4
+      if (is_extreme) then
+         call ieee_get_halting_mode(of_reading, halts)
+         call ieee_get_flag(of_reading, flags)
+         call ieee_set_halting_mode(of_reading, .false.)
+      end if
       read (text, *, iostat=code) value
-      call ieee_set_flag(of_reading, flags)
-      call ieee_set_halting_mode(of_reading, halts)
+      if (is_extreme) then
+         call ieee_set_flag(of_reading, flags)
+         call ieee_set_halting_mode(of_reading, halts)
+      end if
       is_right = code == 0
       if (is_right) is_right = ieee_is_finite(value)
       if (.not. is_right) value = 0.0_wp
@@ -43,7 +50,6 @@ contains
    !> own input also accepts 2*3 (two numbers) and 1.5+3 (1500).
    pure logical function is_plain(text)
       character(*), intent(in) :: text
-      character(*), parameter :: letters = 'eEdD'
       integer :: i
 
       is_plain = verify(text, '0123456789.+-'//letters) == 0

@@ -60,7 +60,12 @@ contains
          real(wp) :: discrete(3), square(3)
 
          associate (value => values(first:first + 2), last => first + 2)
-            discrete = max(g(first:last) + power*(edge - offset)*k(first:last), 0.0_wp)**(1.0_wp/power)
+            discrete = max(g(first:last) + power*(edge - offset)*k(first:last), 0.0_wp)
+            if (abs(power - 0.5_wp) > 0.0_wp) then
+               discrete = discrete**(1.0_wp/power)
+            else
+               discrete = discrete**2
+            end if
             square = (inwards(first:last) + edge)**2
             misfit = value(1)*(discrete(2)*square(3) - discrete(3)*square(2)) &
                      - value(2)*(discrete(1)*square(3) - discrete(3)*square(1)) &

@@ -5,7 +5,7 @@ module mfv_interior
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan, ieee_quiet_nan, ieee_value
    use mfv_body, only: body_type, shape_disk, shape_hole, shape_matrix
    use mfv_interior_circle, only: circle_load_type, longest_element, new_circle_load
-   use mfv_interior_half_plane, only: half_plane_stress, half_plane_surface_stress
+   use mfv_interior_half_plane, only: half_plane_load_type, new_half_plane_load
    use mfv_kinds, only: wp
    use mfv_material, only: plane_strain
    use mfv_surface_tractions, only: find_traction_elements, traction_elements_type, zone_list_type
@@ -34,8 +34,9 @@ module mfv_interior
       !> Elements of the surface, their ends as arc lengths and over `length`, and p + i tau on the body as if it were the
       !> lower one.
       type(traction_elements_type) :: elements
-      !> A circle with these elements.
+      !> A circle or a half-plane with these elements.
       type(circle_load_type) :: circle
+      type(half_plane_load_type) :: half_plane
       !> Largest pressure at the nodes, force/length^2; unit of the elements of a half-plane, length.
       real(wp) :: peak = 0.0_wp, length = 1.0_wp
       !> Bulk stress of a half-plane: a uniform sigma_xx, force/length^2.
@@ -100,9 +101,12 @@ contains
          end if
          e%from = e%from/self%length
          e%to = e%to/self%length
-         if (self%body%circular()) &
+         if (self%body%circular()) then
             self%circle = new_circle_load(body%shape == shape_disk, body%material%kolosov, e%from, e%to, &
                                           polar(self, radial, e%from, e%first), polar(self, radial, e%to, e%last))
+         else
+            self%half_plane = new_half_plane_load(e%from, e%to, e%first, e%last)
+         end if
       end associate
    end subroutine new_interior
 
@@ -173,8 +177,7 @@ contains
          values(stress_yy) = turned(1)
          values(stress_xy) = merge(turned(3), -turned(3), self%body%shape == shape_disk)
       else
-         values(:3) = half_plane_stress(self%elements%from, self%elements%to, self%elements%first, self%elements%last, &
-                                        x/self%length, abs(y)/self%length)
+         values(:3) = self%half_plane%stress(x/self%length, abs(y)/self%length)
          values(stress_xx) = values(stress_xx) + self%bulk
       end if
       values(stress_xy) = self%side*values(stress_xy)
@@ -189,8 +192,7 @@ contains
       if (self%body%circular()) then
          surface_stress = self%circle%surface_stress(arc/self%body%radius)
       else
-         surface_stress = half_plane_surface_stress(self%elements%from, self%elements%to, self%elements%first, &
-                                                    self%elements%last, arc/self%length) + self%bulk
+         surface_stress = self%half_plane%surface_stress(arc/self%length) + self%bulk
       end if
    end function surface_stress
 
