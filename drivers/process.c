@@ -8,6 +8,7 @@
 #endif
 #include <signal.h>
 #include <stdlib.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 /* Call this first. A standard stream that the caller has closed is opened on /dev/null; otherwise the next file, such as a result,
@@ -29,13 +30,20 @@ void mfv_use_one_thread(void) {
 
 #ifdef __ELF__
 /* The same for OpenBLAS that is linked statically: it starts its threads, which spin for some milliseconds, before main.
-   With glibc, freed memory is kept: arrays along the nodes come and go, and new pages cost more than the arithmetic on them. */
+   With glibc on Linux, freed memory is kept and lies in large pages: arrays along the nodes come and go, and new pages cost more
+   than the arithmetic on them. Memory that is reserved here is not used until it is needed. */
 __attribute__((constructor(101))) static void start_process(void) {
   setenv("OPENBLAS_NUM_THREADS", "1", 1);
-#ifdef __GLIBC__
-  mallopt(M_MMAP_THRESHOLD, 1 << 25);
-  mallopt(M_TRIM_THRESHOLD, 1 << 30);
-  mallopt(M_TOP_PAD, 1 << 20);
+#if defined(__GLIBC__) && defined(MADV_HUGEPAGE)
+  const int reserve = 1 << 26, most_on_heap = 1 << 25, keep = 1 << 30;
+  void *volatile grow;
+  mallopt(M_MMAP_THRESHOLD, most_on_heap);
+  mallopt(M_TRIM_THRESHOLD, keep);
+  mallopt(M_TOP_PAD, reserve);
+  grow = malloc(reserve / 64);
+  free(grow);
+  madvise((char *)sbrk(0) - reserve, reserve, MADV_HUGEPAGE);
+  mallopt(M_TOP_PAD, reserve / 8);
 #endif
 }
 #endif
