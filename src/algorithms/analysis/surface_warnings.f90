@@ -49,7 +49,9 @@ contains
          if (body%shape == shape_flat_punch) return
          do side = -1, 1, 2
             do i = 1, size(contact)
-               if (.not. contact(i) .or. .not. ends_at(i, side)) cycle
+               if (.not. contact(i)) cycle
+               if (any(contact(max(i + side, 1):min(i + side, size(contact))))) cycle
+               if (.not. ends_at(i, side)) cycle
                call add_text(warnings, 'the contact reaches the end of the surface of the '//name//' body, near x = '// &
                              to_text(simulation%contact%model%x(i), 4)//' and cannot grow beyond it: tractions and '// &
                              'stresses there are those at a sharp corner; extend the surface unless the corner is real')
