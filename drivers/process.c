@@ -35,15 +35,14 @@ void mfv_use_one_thread(void) {
 __attribute__((constructor(101))) static void start_process(void) {
   setenv("OPENBLAS_NUM_THREADS", "1", 1);
 #if defined(__GLIBC__) && defined(MADV_HUGEPAGE)
-  const int reserve = 1 << 26, most_on_heap = 1 << 25, keep = 1 << 30;
-  void *volatile grow;
+  enum { reserve = 1 << 26, most_on_heap = 1 << 25, keep = 1 << 30, grow = 1 << 20 };
+  void *volatile block;
   mallopt(M_MMAP_THRESHOLD, most_on_heap);
   mallopt(M_TRIM_THRESHOLD, keep);
   mallopt(M_TOP_PAD, reserve);
-  grow = malloc(reserve / 64);
-  free(grow);
+  block = malloc(grow);
+  free(block);
   madvise((char *)sbrk(0) - reserve, reserve, MADV_HUGEPAGE);
-  mallopt(M_TOP_PAD, reserve / 8);
 #endif
 }
 #endif

@@ -19,7 +19,7 @@ module mfv_interior_half_plane
    !> Elements of a block; half-lengths beyond which it acts through its moments; the highest moment.
    integer, parameter :: block_size = 32
    real(wp), parameter :: distant = 4.0_wp
-   integer, parameter :: most_moments = digits(1.0_wp)/2 + 1
+   integer, parameter :: most_moments = ceiling(0.5_wp*digits(1.0_wp))
 
    !> A half-plane under tractions p + i tau that are linear on elements.
    type :: half_plane_load_type
@@ -174,7 +174,7 @@ contains
          if (abs(place) > distant*self%half(block)) then
             ratio = self%half(block)/place
             part = 0.0_wp
-            do k = terms_at(1.0_wp/abs(ratio)), 0, -1
+            do k = terms_at(abs(place)/self%half(block)), 0, -1
                part = part*ratio + aimag(self%moments(k, block))
             end do
             sum = sum - part/place
