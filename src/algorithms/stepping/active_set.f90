@@ -91,8 +91,12 @@ contains
                looks = looks + 1
                if (maxval(abs(ahead - before)) > same_slip(path)*maxval(abs(fields%slip()))) cycle
             end if
-            if (present(held)) found = .not. reverses(path, fields, held)
-            return
+            if (present(held)) then
+               call find_slipping_on(path, segment, fields, held, wanted)
+               found = .not. reverses(path, fields, held)
+            end if
+            if (all(wanted == path%state%status)) return
+            found = .false.
          end if
          if (by_edges) call move_edges(path%state%status, wanted, held)
          if (found .and. is_among(wanted, tried(:, :solve))) then
@@ -229,6 +233,29 @@ contains
          where (status == node_stick .and. slips(wanted) .and. .not. held) wanted = node_stick
       end associate
    end subroutine find_returning
+
+   !> Nodes that stick, but slipped at the start and would slip on at the end, slip in `wanted`: no edge of a stick zone has passed
+   !> them. (The slip at which they hold follows from this assumption, so that their shear tractions do not contradict it.)
+   subroutine find_slipping_on(path, segment, fields, held, wanted)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      type(contact_fields_type), intent(in) :: fields
+      logical, intent(in) :: held(:)
+      integer, intent(inout) :: wanted(:)
+      type(contact_fields_type) :: rates
+      integer, dimension(size(wanted)) :: status, slipping
+      logical :: anew(size(wanted)), found
+
+      anew = path%state%status == node_stick .and. .not. held .and. path%state%fields%pressure > 0.0_wp
+      if (.not. any(anew)) return
+      status = path%state%status
+      slipping = merge(merge(node_slip_left, node_slip_right, fields%shear > 0.0_wp), status, anew)
+      if (.not. any(holds(slipping))) return
+      path%state%status = slipping
+      call find_rates(path, segment, 1.0_wp, fields, rates, found)
+      path%state%status = status
+      if (found) where (anew .and. .not. slipping_back(path, slipping, rates)) wanted = slipping
+   end subroutine find_slipping_on
 
    !> The rates at the fraction `done` of the segment, per unit of load, for the statuses of `path`. `fields`: the fields there, a
    !> first guess. `found`: whether the statuses determine them.

@@ -87,7 +87,7 @@ contains
       do i = 1, increments
          status = path%state%status
          if (chain%fronts) held = holding_before(chain, start, i)
-         if (i == 1) call guess_slip(path, interval, reached(chain, i))
+         if (i == 1) call guess_slip(path, interval, reached(chain, i), held)
          chain%after(i) = path%state%fields
          known = .false.
          if (present(coarser)) call guess_from(path, coarser, start, chain, i, known)
@@ -400,14 +400,16 @@ contains
 
    !> A first guess of the slipping nodes at a fraction of the interval: they slip in the direction of the tangential load. Under
    !> constant pressures and tangential force control their number is that of Mindlin's contact of cylinders: the edge of the stick
-   !> zone is where the pressure is sqrt(Q/(mu P)) of the largest; after a reversal, with half the change in place of Q.
-   subroutine guess_slip(path, interval, fraction)
+   !> zone is where the pressure is sqrt(Q/(mu P)) of the largest; after a reversal, with half the change in place of Q. Only nodes
+   !> stick that hold from the start (`held`), if these are known.
+   subroutine guess_slip(path, interval, fraction, held)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
       real(wp), intent(in) :: fraction
+      logical, intent(in), optional :: held(:)
       integer, dimension(size(path%state%status)) :: status
       real(wp) :: force, sliding_limit
-      logical :: reverses
+      logical :: reverses, can_stick(size(path%state%status))
 
       if (.not. abs(interval%load(motion_shift)%rate) > 0.0_wp) return
       status = merge(node_slip_left, node_slip_right, interval%load(motion_shift)%rate > 0.0_wp)
@@ -422,7 +424,9 @@ contains
          force = load%value + fraction*load%rate
          if (reverses) force = 0.5_wp*(force - fields%force(motion_shift))
          force = max(sign(1.0_wp, load%rate)*force, 0.0_wp)
-         where (fields%pressure > sqrt(force/sliding_limit)*maxval(fields%pressure)) status = node_stick
+         can_stick = .true.
+         if (present(held)) can_stick = held
+         where (can_stick .and. fields%pressure > sqrt(force/sliding_limit)*maxval(fields%pressure)) status = node_stick
       end associate
       call path%set_status(in_contact(path%state%status), status)
    end subroutine guess_slip
