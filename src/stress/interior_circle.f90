@@ -231,14 +231,17 @@ contains
       complex(wp), intent(out) :: integral(2), derivative(2)
       real(wp), parameter :: short = 0.04_wp
       complex(wp), parameter :: i = (0.0_wp, 1.0_wp)
-      complex(wp) :: first, last, step, place, away, along
+      complex(wp) :: first, last, nearer, step, place, away, along
       real(wp) :: turn
 
       first = element%first - zeta
       last = element%last - zeta
       step = element%last - element%first
-      turn = atan2(aimag(conjg(first)*step), real(conjg(first)*last, wp))
+      nearer = merge(first, last, square_of(first) < square_of(last))
+      turn = atan2(aimag(conjg(nearer)*step), real(conjg(first)*last, wp))
+      ! By round-off, points of the surface can lie on the other side of the chord.
       if (disk .and. turn < -0.5_wp*pi) turn = turn + 2.0_wp*pi
+      if (.not. disk .and. turn > 0.5_wp*pi) turn = turn - 2.0_wp*pi
       derivative = 0.0_wp
       if (min(square_of(first), square_of(last)) > (epsilon(1.0_wp)*(2.0_wp*element%sine + 8.0_wp*sqrt(square_of(zeta))))**2) then
          integral(1) = cmplx(0.5_wp*log_ratio(square_of(first), square_of(last), real(step*conjg(first + last), wp)), turn, wp)

@@ -38,7 +38,7 @@ module mfv_interior_half_plane
 
 contains
 
-   !> Elements from `from` to `to`, lengths, ascending, with tractions p + i tau linear from `first` to `last`, force/length^2;
+   !> Elements from `from` to `to`, lengths (blocks are short if they ascend), with tractions p + i tau linear from `first` to `last`, force/length^2;
    !> shapes (elements).
    pure type(half_plane_load_type) function new_half_plane_load(from, to, first, last) result(self)
       real(wp), intent(in) :: from(:), to(:)
@@ -53,7 +53,8 @@ contains
       allocate (self%middle(blocks), self%half(blocks), self%moments(0:most_moments, blocks))
       self%moments = 0.0_wp
       do block = 1, blocks
-         associate (left => from(begin_of(block)), right => to(end_of(self, block)))
+         associate (left => minval(from(begin_of(block):end_of(self, block))), &
+                    right => maxval(to(begin_of(block):end_of(self, block))))
             self%middle(block) = 0.5_wp*(left + right)
             self%half(block) = 0.5_wp*(right - left)
          end associate

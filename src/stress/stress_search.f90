@@ -133,44 +133,30 @@ contains
       places = [inside(1) - beside(size(beside):1:-1), inside, inside(size(inside)) + beside]
    end function candidates
 
-   !> Best of ascending surface points, refined between its neighbours by golden-section search.
+   !> Largest stress along the surface: the best local maxima of ascending points, refined between their neighbours by golden-section
+   !> search.
    subroutine refine_on_surface(interior, places, von_mises, place, value)
       type(interior_type), intent(in) :: interior
       real(wp), intent(in) :: places(:)
       logical, intent(in) :: von_mises
       real(wp), intent(out) :: place, value
-      real(wp), parameter :: golden = 0.6180339887498949_wp, nearly = 1.0e-5_wp
-      real(wp) :: left, right, inner(2), values(2), before
-      integer :: best, i
+      integer, parameter :: starts = 6
+      real(wp) :: values(size(places))
+      logical :: is_start(size(places))
+      integer :: best, i, n, start
 
-      best = 1
-      value = -huge(1.0_wp)
-      do i = 1, size(places)
-         before = stress_at(places(i))
-         if (.not. before > value) cycle
-         best = i
-         value = before
-      end do
+      n = size(places)
+      values = [(stress_at(places(i)), i=1, n)]
+      best = maxloc(values, dim=1)
       place = places(best)
-      left = places(max(best - 1, 1))
-      right = places(min(best + 1, size(places)))
-      inner = [right - golden*(right - left), left + golden*(right - left)]
-      values = [stress_at(inner(1)), stress_at(inner(2))]
-      do while (right - left > max(nearly*interior%half_width(), 4.0_wp*epsilon(left)*max(abs(left), abs(right))))
-         if (values(1) >= values(2)) then
-            right = inner(2)
-            inner = [right - golden*(right - left), inner(1)]
-            values = [stress_at(inner(1)), values(1)]
-         else
-            left = inner(1)
-            inner = [inner(2), left + golden*(right - left)]
-            values = [values(2), stress_at(inner(2))]
-         end if
+      value = values(best)
+      is_start = [(values(i) >= maxval(values(max(i - 1, 1):min(i + 1, n))), i=1, n)]
+      do start = 1, starts
+         if (.not. any(is_start)) exit
+         best = maxloc(values, dim=1, mask=is_start)
+         is_start(best) = .false.
+         call refine_between(places(max(best - 1, 1)), places(min(best + 1, n)))
       end do
-      i = maxloc(values, dim=1)
-      if (.not. values(i) > value) return
-      value = values(i)
-      place = inner(i)
 
    contains
 
@@ -183,6 +169,32 @@ contains
             stress_at = interior%surface_stress(arc)
          end if
       end function stress_at
+
+      !> Take the largest stress between two points if it is larger.
+      subroutine refine_between(from, to)
+         real(wp), intent(in) :: from, to
+         real(wp), parameter :: golden = 0.6180339887498949_wp, nearly = 1.0e-5_wp
+         real(wp) :: left, right, inner(2), found(2)
+
+         left = from
+         right = to
+         inner = [right - golden*(right - left), left + golden*(right - left)]
+         found = [stress_at(inner(1)), stress_at(inner(2))]
+         do while (right - left > max(nearly*interior%half_width(), 4.0_wp*epsilon(left)*max(abs(left), abs(right))))
+            if (found(1) >= found(2)) then
+               right = inner(2)
+               inner = [right - golden*(right - left), inner(1)]
+               found = [stress_at(inner(1)), found(1)]
+            else
+               left = inner(1)
+               inner = [inner(2), left + golden*(right - left)]
+               found = [found(2), stress_at(inner(2))]
+            end if
+         end do
+         if (.not. maxval(found) > value) return
+         value = maxval(found)
+         place = inner(maxloc(found, dim=1))
+      end subroutine refine_between
    end subroutine refine_on_surface
 
    !> Von Mises stress at a depth below the arc length `arc`, -1 outside the body.

@@ -86,14 +86,20 @@ contains
       integer, allocatable :: owner(:)
       real(wp), parameter :: near = 1.0e-6_wp
       integer, parameter :: fewest_in_zone = 60
-      integer :: fewest, i
+      logical, allocatable :: done(:)
+      integer :: fewest, i, j
 
       allocate (elements%from(0), elements%to(0), elements%edges(0), elements%first(0), elements%last(0))
       patch%graded = maxval(width) - minval(width) > near*maxval(width)
       call assign_nodes(arc, width, abs(pressure) > 0.0_wp .or. abs(shear) > 0.0_wp, zones, edges, sharp, owner)
       fewest = max(zones%fewest_elements/max(size(edges, 2), 1), min(zones%fewest_elements, fewest_in_zone))
-      do i = 1, size(edges, 2)
-         if (.not. any(owner == i)) cycle
+      allocate (done(size(edges, 2)), source=.false.)
+      do j = 1, size(arc)
+         ! Each patch at its first node: from left to right.
+         i = owner(j)
+         if (i == 0) cycle
+         if (done(i)) cycle
+         done(i) = .true.
          patch%arc = pack(arc, owner == i)
          patch%width = pack(width, owner == i)
          patch%pressure = pack(pressure, owner == i)
