@@ -444,7 +444,7 @@ contains
             finer%work_error = error
          end if
       end if
-      if (finer%node_wise_error <= finer%work_error) then
+      if (finer%work < 0.0_wp .or. finer%node_wise_error <= finer%work_error) then
          finer%work = finer%node_wise
          finer%work_error = finer%node_wise_error
       end if

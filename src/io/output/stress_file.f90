@@ -60,7 +60,7 @@ contains
       call read_text(path, bytes, error, any_length=.true.)
       call read_interior(path, request, case, interior, result, error)
       if (allocated(error)) then
-         error%message = path//': '//error%message
+         if (index(error%message, path) /= 1) error%message = path//': '//error%message
          return
       end if
       result%half_width = interior%half_width()
