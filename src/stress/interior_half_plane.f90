@@ -38,8 +38,8 @@ module mfv_interior_half_plane
 
 contains
 
-   !> Elements from `from` to `to`, lengths (blocks are short if they ascend), with tractions p + i tau linear from `first` to `last`, force/length^2;
-   !> shapes (elements).
+   !> Elements from `from` to `to`, lengths (blocks are short if they ascend), with tractions p + i tau linear from `first` to
+   !> `last`, force/length^2; shapes (elements).
    pure type(half_plane_load_type) function new_half_plane_load(from, to, first, last) result(self)
       real(wp), intent(in) :: from(:), to(:)
       complex(wp), intent(in) :: first(:), last(:)

@@ -133,8 +133,8 @@ contains
       places = [inside(1) - beside(size(beside):1:-1), inside, inside(size(inside)) + beside]
    end function candidates
 
-   !> Largest stress along the surface: the best local maxima of ascending points, refined between their neighbours by golden-section
-   !> search.
+   !> Largest stress along the surface: the best local maxima of ascending points, refined between their neighbours by
+   !> golden-section search.
    subroutine refine_on_surface(interior, places, von_mises, place, value)
       type(interior_type), intent(in) :: interior
       real(wp), intent(in) :: places(:)
