@@ -143,14 +143,18 @@ def read(path: str | os.PathLike[str], **options: Any) -> list[Loop]:
 
     Raises OSError, InputError.
     """
-    with open(path, encoding="utf-8") as file:
-        lines = [line for line in file if line.strip() and not line.lstrip().startswith("#")]
+    name = os.fspath(path)
     try:
-        rows = np.genfromtxt(lines, delimiter=",", names=True, dtype=None, encoding="utf-8")
-    except ValueError:
-        raise input_error(f"{os.fspath(path)}: not a table: its rows have different numbers of comma-separated columns") from None
-    names = rows.dtype.names or ()
-    return loops_of({name: np.atleast_1d(rows[name]) for name in names}, **{"name": os.fspath(path), **options})
+        with open(path, encoding="utf-8") as file:
+            lines = [text for line in file if (text := line.partition("#")[0].strip())]
+    except UnicodeDecodeError:
+        raise input_error(f"{name}: not a text file in UTF-8") from None
+    names, *rows = [[cell.strip() for cell in line.split(",")] for line in lines] or [[]]
+    if not rows:
+        raise input_error(f"{name}: no rows; needs a line with the names of the columns, such as Q,U,P, and rows of numbers")
+    if any(len(row) != len(names) for row in rows):
+        raise input_error(f"{name}: not a table: its rows have different numbers of comma-separated columns")
+    return loops_of(dict(zip(names, zip(*rows))), **{"name": name, **options})
 
 
 def loops_of(table: Any, **options: Any) -> list[Loop]:
@@ -161,14 +165,29 @@ def loops_of(table: Any, **options: Any) -> list[Loop]:
     missing = [names[-1].upper() for meaning, names in _COLUMNS.items() if columns[meaning] is None and meaning != "test"]
     if missing:
         raise input_error(f"{label}: no column {', '.join(missing)}; there are {', '.join(map(str, found.values())) or 'none'}")
-    force, shift, pressing = (np.asarray(table[columns[name]]) for name in ("tangential_force", "shift", "normal_force"))
+    force, shift, pressing = (
+        _numbers(table[columns[name]], f"{label}: column {columns[name]}") for name in ("tangential_force", "shift", "normal_force")
+    )
     if columns["test"] is None:
         return [Loop(force, shift, pressing, name=label, **options)]  # type: ignore[arg-type]  # it takes the mean
     tests = np.asarray(table[columns["test"]])
+    if "" in tests.tolist():
+        raise input_error(f"{label}: column {columns['test']} has empty cells; give every row the name of its test")
     return [
         Loop(force[tests == test], shift[tests == test], pressing[tests == test], name=f"{label}: {test}", **options)
         for test in dict.fromkeys(tests.tolist())
     ]
+
+
+def _numbers(values: Any, column: str) -> Array:
+    """The numbers of a column; NaN for an empty cell. Raises InputError."""
+    numbers = []
+    for value in np.atleast_1d(np.asarray(values)).tolist():
+        try:
+            numbers.append(math.nan if value is None or value == "" else float(value))
+        except (TypeError, ValueError):
+            raise input_error(f"{column}: {value!r} is not a number") from None
+    return np.array(numbers)
 
 
 @dataclass(repr=False)

@@ -210,6 +210,39 @@ def test_tables_and_files(tmp_path: Path) -> None:
         identify.loops_of(table.drop(columns="P"))
 
 
+@pytest.mark.parametrize(
+    "content, message",
+    [
+        (b"Q,U,P\n1,1,100\n2,2,\n3,3,100\n4,4,100\n5,5,100\n", "the columns must be finite numbers; remove the rows with gaps"),
+        (b"Q,U,P\n1,1,100\n,2,100\n3,3,100\n4,4,100\n5,5,100\n", "the columns must be finite numbers; remove the rows with gaps"),
+        (b"Q,U,P\n1,1,100\n2,far,100\n", "column U: 'far' is not a number"),
+        (b"Q,U,P,test\n1,1,100,a\n2,2,100,\n", "column test has empty cells"),
+        (b"Q,U,P\n1,1\n", "not a table: its rows have different numbers"),
+        (b"Q,U,P\n", "no rows; needs a line with the names of the columns"),
+        (b"", "no rows; needs a line with the names of the columns"),
+        (b"Q,U,P\n1,1,\xb5\n", "not a text file in UTF-8"),
+    ],
+)
+def test_messages_about_a_table_name_its_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], content: bytes, message: str
+) -> None:
+    case, loops = tmp_path / "rig.nml", tmp_path / "loops.csv"
+    case.write_text(cylinders().text())
+    loops.write_bytes(content)
+    with pytest.raises(errors.InputError, match=re.escape(f"{loops}: {message}")):
+        identify.read(loops)
+    assert main(["identify", str(case), str(loops), "--free", "friction%mu=0.5"]) == 2
+    assert capsys.readouterr().err.startswith(f"mfv: {loops}: {message}")
+
+
+def test_integers_in_a_table(tmp_path: Path) -> None:
+    (tmp_path / "loops.csv").write_text(
+        "Q, U, P, test  # units: N, mm\n" + "".join(f"{row}, {2 * row}, 100, 7\n" for row in range(5))
+    )
+    (loop,) = identify.read(tmp_path / "loops.csv")
+    assert loop.shift.tolist() == [0.0, 2.0, 4.0, 6.0, 8.0] and loop.normal_force == 100.0 and loop.name.endswith("loops.csv: 7")
+
+
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     case, loops, picture = tmp_path / "rig.nml", PROJECT / "examples" / "loops.csv", tmp_path / "rig.png"
     case.write_text(cylinders(61).text())
