@@ -273,6 +273,31 @@ def test_segalmans_parameters_are_those_of_its_density(chi: float, beta: float) 
     assert float(model.dissipation(1.5 * top) - model.dissipation(top)) == pytest.approx(4.0 * 2.0 * 0.5 * top)
 
 
+@pytest.mark.parametrize("cells", [1, 2])
+def test_few_cells_of_segalmans_element_have_its_stiffness_and_sliding_force(cells: int) -> None:
+    model = joint.Segalman(2.0, 3.0, -0.3, 0.7)
+    element, amplitudes = model.iwan(cells), np.array([1.0, 1.5]) * model.largest_slip
+    assert element.slip.size == 2 * cells + 1
+    assert element.stiffness.sum() == pytest.approx(3.0, rel=1e-9)
+    np.testing.assert_allclose(element.force(amplitudes), 2.0, rtol=1e-9)
+    np.testing.assert_allclose(element.dissipation(amplitudes), model.dissipation(amplitudes), rtol=1e-8)
+
+
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        ((0,), "cells=0: must be a whole number of at least 1"),
+        ((2.5,), "cells=2.5: must be a whole number of at least 1"),
+        ((20, 0.0), "smallest=0.0: must be between 0 and 1"),
+        ((20, 1), "smallest=1: must be between 0 and 1"),
+        ((20, np.nan), "smallest=nan: must be between 0 and 1"),
+    ],
+)
+def test_wrong_cells_of_segalmans_element_are_refused(arguments: tuple[float, ...], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        joint.Segalman(2.0, 3.0, -0.3, 0.7).iwan(*arguments)
+
+
 def test_fits_recover_their_own_models() -> None:
     """Cycles of a known model instead of MFV's: the fit finds its parameters."""
     amplitudes = np.geomspace(0.01, 0.6, 8)

@@ -6,6 +6,7 @@ import json
 import math
 from dataclasses import asdict, dataclass, fields
 from functools import cached_property
+from operator import index
 from pathlib import Path
 from typing import Any, ClassVar, NamedTuple, Protocol, TypeVar
 
@@ -190,10 +191,12 @@ class Segalman(_Saved):
     def iwan(self, cells: int = 20, smallest: float = 1.0e-3) -> Iwan:
         """The element: two sliders for each of the `cells`, whose edges grow geometrically from `smallest` times phi_max.
 
-        At the edges force, stiffness and dissipation are exact (see `gauss_pair`).
+        At the edges force, stiffness and dissipation are exact (see `gauss_pair`). One cell goes up to phi_max. Raises ValueError.
         """
+        if not 0.0 < smallest < 1.0:
+            raise ValueError(f"smallest={smallest}: must be between 0 and 1, a part of phi_max")
         top = self.largest_slip
-        edges = np.append(0.0, top * np.geomspace(smallest, 1.0, cells))
+        edges = np.append(0.0, top * np.geomspace(1.0, smallest, number_of_cells(cells))[::-1])
         pieces = []
         for low, high in zip(edges[:-1], edges[1:]):
             powers = self.chi + 1.0 + np.arange(4)
@@ -216,6 +219,17 @@ class Segalman(_Saved):
     @cached_property
     def _element(self) -> Iwan:
         return self.iwan()
+
+
+def number_of_cells(cells: Any) -> int:
+    """The number of cells of an Iwan model. Raises ValueError."""
+    try:
+        count = index(cells)
+    except TypeError:
+        count = 0
+    if count < 1:
+        raise ValueError(f"cells={cells}: must be a whole number of at least 1")
+    return count
 
 
 def gauss_pair(slip: Array, stiffness: Array) -> tuple[Array, Array]:
