@@ -8,6 +8,7 @@ import json
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
@@ -378,6 +379,56 @@ def test_a_trial_leaves_the_state_and_the_number_of_updates_does_not_matter(mind
         assert update.force == pytest.approx(once.force, rel=limit) and update.stiffness == pytest.approx(once.stiffness, rel=1e-4)
 
 
+@pytest.fixture(scope="module")
+def compiler() -> str:
+    found = shutil.which("cc")
+    if not found:
+        pytest.skip("no C compiler")
+    return found
+
+
+REAL = ctypes.POINTER(ctypes.c_double)
+
+
+def c_update(compiler: str, folder: Path, **elements: joint.Iwan) -> Callable[..., None]:
+    """The evaluator in C: number of the element, sliders (overwritten), displacement, force and stiffness."""
+    for name, element in elements.items():
+        (folder / f"{name}.h").write_text(element.c_source(name))
+    (folder / "host.c").write_text(
+        "".join(f'#include "{name}.h"\n' for name in elements)
+        + f"""static const mfv_joint *const elements[] = {{{", ".join(f"&{name}" for name in elements)}}};
+void update(int which, double *sliders, double displacement, double *force, double *stiffness) {{
+  mfv_joint_update(elements[which], sliders, displacement, sliders, force, stiffness);
+}}
+"""
+    )
+    shared = folder / "host.so"
+    flags = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O2", "-shared", "-fPIC"]
+    subprocess.run([compiler, *flags, "host.c", "-o", shared, "-lm"], cwd=folder, check=True)
+    update = ctypes.CDLL(str(shared)).update
+    update.argtypes, update.restype = [ctypes.c_int, REAL, ctypes.c_double, REAL, REAL], None
+    return update
+
+
+def test_a_zero_increment_keeps_force_and_tangent(compiler: str, tmp_path: Path) -> None:
+    """After loading and after unloading, whatever the rounding of u - (u - slip); in Python and in C."""
+    random = np.random.default_rng(2)
+    model = joint.Iwan(np.ones(30), np.cumsum(random.uniform(0.01, 0.1, 30)), 0.5)
+    update = c_update(compiler, tmp_path, model=model)
+    force, stiffness, sliders = ctypes.c_double(), ctypes.c_double(), model.start()
+    state = model.start()
+    for shift in random.normal(0.0, 0.7, 300).tolist():
+        first = model.update(state, shift)
+        state = first.state
+        for _ in range(3):
+            again = model.update(state, shift)
+            assert again.force == pytest.approx(first.force, rel=1e-14) and np.array_equal(again.state, state)
+            update(0, sliders.ctypes.data_as(REAL), shift, force, stiffness)
+            assert again.stiffness == stiffness.value and np.array_equal(sliders, state)
+            sliding = np.isclose(np.abs(shift - state), model.slip, rtol=0.0, atol=1e-13)
+            assert again.stiffness == np.sum(~sliding) + 0.5
+
+
 def test_json_keeps_every_digit(mindlin: joint.Measurement) -> None:
     models = [
         joint.table(mindlin.backbone),
@@ -441,55 +492,18 @@ def test_wrong_arguments_are_refused(mindlin: joint.Measurement) -> None:
         joint.Backbone.of([1.0, 2.0], [0.0, 1.0])
 
 
-@pytest.fixture(scope="module")
-def compiler() -> str:
-    found = shutil.which("cc")
-    if not found:
-        pytest.skip("no C compiler")
-    return found
-
-
 def test_c_follows_python_and_mfv_cycle_by_cycle(mindlin: joint.Measurement, compiler: str, tmp_path: Path) -> None:
     """The exported header, compiled alone; the sliders of one element and of two in one file."""
     table, few = joint.table(mindlin.backbone), joint.from_json(joint.iwan(mindlin.backbone, 20).to_json())
     assert isinstance(few, joint.Iwan)
-    (tmp_path / "table.h").write_text(table.c_source("table"))
-    (tmp_path / "few.h").write_text(few.c_source("few"))
-    (tmp_path / "host.c").write_text(
-        """#include "table.h"
-#include "few.h"
-void update(int which, double *sliders, double displacement, double *force, double *stiffness) {
-  mfv_joint_update(which ? &few : &table, sliders, displacement, sliders, force, stiffness);
-}
-"""
-    )
-    shared = tmp_path / "host.so"
-    command = [
-        compiler,
-        "-std=c99",
-        "-pedantic",
-        "-Wall",
-        "-Wextra",
-        "-Werror",
-        "-O2",
-        "-shared",
-        "-fPIC",
-        "host.c",
-        "-o",
-        shared,
-        "-lm",
-    ]
-    subprocess.run(command, cwd=tmp_path, check=True)
-    update = ctypes.CDLL(str(shared)).update
-    real = ctypes.POINTER(ctypes.c_double)
-    update.argtypes = [ctypes.c_int, real, ctypes.c_double, real, real]
+    update = c_update(compiler, tmp_path, table=table, few=few)
     force, stiffness = ctypes.c_double(), ctypes.c_double()
     for which, (model, limit) in enumerate(((table, 1e-9), (few, 0.01))):
         sliders, state = np.zeros(model.slip.size), model.start()
         for cycle in mindlin.cycles:
             lost, at, last = 0.0, None, None
             for shift, expected in zip(cycle.displacement.tolist(), cycle.force.tolist()):
-                update(which, sliders.ctypes.data_as(real), shift, force, stiffness)
+                update(which, sliders.ctypes.data_as(REAL), shift, force, stiffness)
                 python = model.update(state, shift)
                 state = python.state
                 assert force.value == pytest.approx(python.force, rel=1e-12, abs=1e-13)

@@ -23,7 +23,8 @@ typedef struct mfv_joint {
 } mfv_joint;
 
 /* Go from the state `before` straight to a displacement (in total, not an increment). Writes the state there to `after`, which may be
- * `before`; the force; and the consistent tangent, the derivative of the force on in the same direction. */
+ * `before`; the force; and the consistent tangent, the derivative of the force on in the same direction. A slider that has reached its
+ * slip to round-off counts as sliding in the tangent, so that a zero increment does not change it. */
 static inline void mfv_joint_update(const mfv_joint *joint, const double *before, double displacement, double *after,
                                     double *force, double *stiffness) {
   *force = joint->elastic * displacement;
@@ -32,7 +33,7 @@ static inline void mfv_joint_update(const mfv_joint *joint, const double *before
     const double stretch = displacement - before[i], slip = joint->slip[i];
     const int stuck = fabs(stretch) < slip;
     *force += joint->stiffness[i] * (stuck ? stretch : copysign(slip, stretch));
-    *stiffness += stuck ? joint->stiffness[i] : 0.0;
+    *stiffness += fabs(stretch) < slip - 1.0e-15 * (fabs(displacement) + slip) ? joint->stiffness[i] : 0.0;
     after[i] = stuck ? before[i] : displacement - copysign(slip, stretch);
   }
 }

@@ -23,6 +23,9 @@ FORMAT, VERSION = "mfv joint", 1
 #: Substeps of BoucWen: the largest change of displacement, relative to that at which the first slope reaches the sliding force.
 FINEST = 0.02
 
+#: Distance from its slip, relative to displacement and slip, at which a slider of Iwan slides: a zero increment keeps the tangent.
+ROUND_OFF = 1.0e-15
+
 #: The evaluator in C.
 _C_HEADER = Path(__file__).with_name("mfv_joint.h")
 
@@ -33,7 +36,7 @@ class Update(NamedTuple):
     """What a displacement leads to."""
 
     force: float  #: [force/length]
-    stiffness: float  #: consistent tangent, derivative of the force with respect to the displacement, on in the same direction
+    stiffness: float  #: consistent tangent, derivative of the force with respect to the displacement, on in the same direction (of loading for a zero increment)
     state: Array  #: the new state; the old one is unchanged
 
 
@@ -106,7 +109,8 @@ class Iwan(_Saved):
         """Every slider follows once its spring is stretched by its slip; exact for any displacement."""
         sliders = np.clip(state, displacement - self.slip, displacement + self.slip)
         force = self.stiffness @ (displacement - sliders) + self.elastic * displacement
-        stuck = np.abs(displacement - state) < self.slip
+        round_off = ROUND_OFF * (abs(displacement) + self.slip)
+        stuck = np.abs(displacement - state) < self.slip - round_off
         return Update(float(force), float(self.stiffness @ stuck + self.elastic), sliders)
 
     def force(self, displacement: ArrayLike) -> Array:
