@@ -120,6 +120,15 @@ def test_the_backbone_of_small_cycles_goes_on_until_all_slides() -> None:
     assert measured.backbone.displacement[-2] == pytest.approx(float(joint.mindlin_shift(MU * P, *CLOSED)), rel=2e-2)
 
 
+def test_a_scene_may_be_sheared_before_if_it_ends_without_tangential_force() -> None:
+    sheared = scene(nodes=40)
+    sheared.mesh.refine = None
+    sheared.steps += [Step(tangential_force=force * P) for force in (0.11, 0.33, 0.0)]
+    assert 0.0 < abs(float(sheared.run(check=True).summary.tangential_force)) < 1e-15  # round-off
+    backbone = joint.measure(sheared, [0.5]).backbone
+    assert backbone.force[0] == 0.0 and backbone.force[-1] == pytest.approx(MU * P, rel=1e-9)
+
+
 def test_all_sliders_carry_stiffness_and_force(mindlin: joint.Measurement) -> None:
     table = joint.table(mindlin.backbone)
     _, _, stiffness = joint.mindlin_distribution(0.0, *CLOSED)
@@ -468,10 +477,20 @@ def test_wrong_arguments_are_refused(mindlin: joint.Measurement) -> None:
         joint.measure(scene(), [0.5, 0.2])
     with pytest.raises(ValueError, match="force_ratios must increase, between 0 and 1"):
         joint.measure(scene(), [0.5, 1.0])
-    exact = scene()
-    exact.solver = Solver(accuracy=1e-3)
-    with pytest.raises(ValueError, match="measure needs every event"):
-        joint.measure(exact, [0.5])
+    shift_of_0 = [Step(tangential_force=0.1 * P), Step(shift=0.0)]
+    for keys, message in (
+        ({"solver": Solver(accuracy=1e-3)}, "measure needs every event"),
+        ({"solver": Solver(algorithm="conventional")}, "measure needs every event"),
+        ({"wear": mfv.Wear(coefficient=1e-3)}, "remove wear from the scene"),
+        ({"history": mfv.History(tangential_force=[0.1, 0.0])}, "remove history from the scene"),
+        ({"steps": [*scene().steps, Step(tangential_force=0.1 * P)]}, "end at the tangential force 0.0785398: measure begins at 0"),
+        ({"steps": [*scene().steps, *shift_of_0]}, "end at the tangential force .*: measure begins at 0"),
+    ):
+        changed = scene_of_equal_intervals(41)
+        for name, value in keys.items():
+            setattr(changed, name, value)
+        with pytest.raises(ValueError, match=message):
+            joint.measure(changed, [0.5])
     falling = scene_of_equal_intervals(31)
     falling.friction = Friction.weakening(0.5, 0.4, 5.0)
     with pytest.raises(ValueError, match="the tangential force falls while the displacement grows"):

@@ -25,7 +25,8 @@ DOUBLINGS = 12
 #: A mesh refined for the cycles is continued on either side by this part of its length.
 MARGIN = 0.25
 
-#: Dissipation over force times displacement, of the amplitudes, up to which it is round-off: nothing slips.
+#: Dissipation over force times displacement, of the amplitudes, up to which it is round-off: nothing slips. Likewise the tangential
+#: force at the beginning, over the largest one.
 ROUND_OFF = 1.0e-8
 
 
@@ -81,7 +82,7 @@ def measure(scene: Scene, force_ratios: Sequence[float] = RATIOS, *, repeats: in
     """Shear a scene: a backbone up to sliding, and cycles between +Q and -Q of growing amplitude.
 
     `scene`: its steps bring the bodies together; the last of them with a normal quantity must prescribe `normal_force`, which is
-    then constant. `force_ratios`: Q/(mu P), increasing, between 0 and 1. `repeats`: cycles of every amplitude, of which the last is
+    then constant, and may shear them if they end at a tangential force of 0. `force_ratios`: Q/(mu P), increasing, between 0 and 1. `repeats`: cycles of every amplitude, of which the last is
     returned; with full coupling the first one differs. With refine='edges' in the mesh the intervals are small where slip zones end
     at these amplitudes; the backbone has the same mesh. Every event is a point, so `accuracy` of the solver must be 0.
     Raises ValueError, InputError, and the exception of a run that ends early.
@@ -91,16 +92,39 @@ def measure(scene: Scene, force_ratios: Sequence[float] = RATIOS, *, repeats: in
         raise ValueError("force_ratios must increase, between 0 and 1")
     if repeats < 1:
         raise ValueError(f"repeats={repeats}: must be at least 1")
-    if scene.solver is not None and (scene.solver.accuracy or scene.solver.stepping == "leap"):
-        raise ValueError("measure needs every event: remove accuracy and stepping='leap' from the solver")
+    _check(scene)
     sheared = copy.deepcopy(scene)
     sheared.output = None
     for ratio in ratios:
         sheared.steps += [Step(force_ratio=ratio), Step(force_ratio=-ratio, cycles=repeats)]
     result = sheared.run(check=True)
     origin = len(scene.steps)
+    _check_origin(result.history, origin)
     cycles = [_last_cycle(result.history, origin, step) for step in range(origin + 2, origin + 2 * len(ratios) + 1, 2)]
     return Measurement(_backbone(scene, result, cycles[-1].force_amplitude), cycles)
+
+
+def _check(scene: Scene) -> None:
+    """Raises ValueError for a scene that cannot be measured."""
+    solver = scene.solver
+    if solver is not None and (solver.accuracy or solver.stepping == "leap"):
+        raise ValueError("measure needs every event: remove accuracy and stepping='leap' from the solver")
+    if solver is not None and solver.algorithm == "conventional":
+        raise ValueError("measure needs every event, which algorithm='conventional' does not find: remove it from the solver")
+    if scene.wear is not None:
+        raise ValueError("measure needs surfaces that do not change: remove wear from the scene")
+    if scene.history is not None:
+        raise ValueError("measure shears the scene itself, after its steps: remove history from the scene")
+
+
+def _check_origin(history: Group, origin: int) -> None:
+    """Raises ValueError if the tangential force at the end of the step `origin` is more than round-off."""
+    force = history.tangential_force[history.step <= origin][-1]
+    if abs(force) > ROUND_OFF * np.max(np.abs(history.tangential_force)):
+        raise ValueError(
+            f"the steps of the scene end at the tangential force {force:.6g}: measure begins at 0; "
+            "remove the step that shears, or add one with tangential_force=0"
+        )
 
 
 def _last_cycle(history: Group, origin: int, step: int) -> Cycle:
@@ -133,7 +157,9 @@ def _backbone(scene: Scene, result: Result, force: float) -> Backbone:
                 break
         history = contact.result().history
     sheared = np.append(np.flatnonzero(history.step <= len(scene.steps))[-1], np.flatnonzero(history.step > len(scene.steps)))
-    return _points(history.shift[sheared] - origin.shift, history.tangential_force[sheared])
+    forces = history.tangential_force[sheared]
+    forces[0] = 0.0  # it may be round-off
+    return _points(history.shift[sheared] - origin.shift, forces)
 
 
 def _wider(mesh: Group) -> Array:
