@@ -113,6 +113,7 @@ class State:
         """Do not call this; use `Case.save`."""
         self._handle = c_void_p()
         self._status = 0
+        self._parameters: tuple[str, ...] = ()
         _freed_with(self, library().mfv_state_free, self._handle)
 
     def __reduce__(self) -> NoReturn:
@@ -178,7 +179,8 @@ class Case:
         self._loads = LoadsStructure(size=ctypes.sizeof(LoadsStructure))
         self._loads_reference = byref(self._loads)
         self._spare_states: list[State] = []
-        self._parameters: tuple[str, ...] = ()
+        self._parameters: tuple[str, ...] = ()  # of the last differentiate; and those of the present state
+        self._parameters_of_state: tuple[str, ...] = ()
         self._x = np.empty(0)
         self._is_long = self._count("mesh/x") >= MANY_NODES or self._attribute("friction_law") in LONG_LAWS
 
@@ -213,7 +215,8 @@ class Case:
         with self._lock:
             self._call("mfv_copy", byref(handle))
             copied = Case._of_handle(handle)
-            copied._scene, copied._status, copied._parameters = self._scene, self._status, self._parameters
+            copied._scene, copied._status = self._scene, self._status
+            copied._parameters, copied._parameters_of_state = self._parameters, self._parameters_of_state
         return copied
 
     def close(self) -> None:
@@ -338,21 +341,29 @@ class Case:
         all other targets, also relative ones, are held. Raises BadArgument for an unknown or passed parameter, with large
         increments (accuracy), the conventional algorithm, wear, and friction laws other than Coulomb's.
         """
-        self._call("mfv_differentiate", text_for(" ".join(parameters)))
-        self._parameters = parameters
+        with self._lock:
+            self._call("mfv_differentiate", text_for(" ".join(parameters)))
+            self._parameters = self._parameters_of_state = parameters
 
     @property
     def derivatives(self) -> dict[str, Derivative]:
         """Derivatives of the present state with respect to the parameters of `differentiate`, by their names there.
 
-        Raises BadArgument if there are none, as after a step that ended early.
+        Raises BadArgument if there are none, as after a step that ended early, or after `restore` of a state that was saved with
+        other parameters; name targets again then, keys only before the first step.
         """
         found: dict[str, Derivative] = {}
         with self._lock:
             for number, name in enumerate(self._parameters):
                 loads = LoadsStructure(size=ctypes.sizeof(LoadsStructure))
                 pressure, shear = np.empty((2, self._count("mesh/x")))
-                self._call("mfv_derivative", number, byref(loads), pressure.size, real_pointer(pressure), real_pointer(shear))
+                try:
+                    self._call("mfv_derivative", number, byref(loads), pressure.size, real_pointer(pressure), real_pointer(shear))
+                except errors.BadArgument as error:
+                    if self._parameters_of_state is self._parameters:
+                        raise
+                    why = "the restored state was saved with other parameters than those of the last differentiate"
+                    raise errors.BadArgument(error.status, f"{error} ({why})") from None
                 found[name] = Derivative(Loads._make(LoadsStructure.unpack(loads)[1:-1]), pressure, shear)
         return found
 
@@ -361,18 +372,19 @@ class Case:
         kept = State() if state is None else state
         with self._lock:
             self._call("mfv_save", byref(kept._handle))
-            kept._status = self._status
+            kept._status, kept._parameters = self._status, self._parameters_of_state
         return kept
 
     def restore(self, state: State) -> None:
         """Restore a state of this case or of a copy; results afterwards are bit-identical.
 
         With history='none' and states='none' in &output any state can be restored in any order; otherwise only states of the
-        load history that led to the present one. Raises BadArgument.
+        load history that led to the present one. Derivatives are restored if the state was saved with the parameters of the last
+        `differentiate`. Raises BadArgument.
         """
         with self._lock:
             self._call("mfv_restore", state._handle)
-            self._status = state._status
+            self._status, self._parameters_of_state = state._status, state._parameters
 
     @contextmanager
     def trial(self) -> Iterator[Trial]:

@@ -122,8 +122,16 @@ def test_states_and_copies_have_their_derivatives() -> None:
         # A state is saved with the parameters of that time: with others it has none.
         case.differentiate("shift")
         case.restore(pressed)
-        with pytest.raises(errors.BadArgument, match="no derivatives"):
+        with pytest.raises(errors.BadArgument, match="no derivatives.*saved with other parameters than those of the last"):
             _ = case.derivatives
+        with pytest.raises(errors.BadArgument, match="saved with other parameters"):
+            _ = case.copy().derivatives
+        case.differentiate("shift")
+        again = case.save()
+        case.advance(shift=1.0e-5)
+        assert case.derivatives["shift"].loads.shift == 1.0
+        case.restore(again)
+        assert case.derivatives["shift"].loads.shift == 0.0
 
 
 def test_data_in_memory_are_kept_for_other_values_of_a_key() -> None:
