@@ -462,6 +462,12 @@ def test_json_keeps_every_digit(mindlin: joint.Measurement) -> None:
         ({"stiffness": [1.0, -1.0]}, "stiffness of a joint must be positive numbers"),
         ({"slip": [2.0, 1.0]}, "the slips must increase"),
         ({"elastic": -1.0}, "must be a number at least 0"),
+        ({"model": ["iwan"]}, r"unknown joint model \['iwan'\]"),
+        ({"stiffness": "soft"}, "stiffness of a joint must be a list of numbers, not 'soft'"),
+        ({"stiffness": [1.0, None]}, "stiffness of a joint must be a list of numbers"),
+        ({"slip": [[1.0], [1.0, 2.0]]}, "slip of a joint must be a list of numbers"),
+        ({"elastic": "none"}, "elastic of a joint must be a number, not 'none'"),
+        ({"elastic": [0.0]}, "elastic of a joint must be a number"),
     ],
 )
 def test_wrong_json_is_refused(change: dict[str, object], message: str) -> None:
@@ -495,10 +501,17 @@ def test_wrong_arguments_are_refused(mindlin: joint.Measurement) -> None:
     falling.friction = Friction.weakening(0.5, 0.4, 5.0)
     with pytest.raises(ValueError, match="the tangential force falls while the displacement grows"):
         joint.measure(falling, [0.2])
-    with pytest.raises(ValueError, match="one for each slider, at least one"):
-        joint.iwan(joint.Backbone.of([0.0, 1.0], [0.0, 1.0]))
-    with pytest.raises(ValueError, match="cells=0: must be at least 1"):
-        joint.iwan(mindlin.backbone, 0)
+    for fit in (joint.table, joint.iwan):
+        with pytest.raises(ValueError, match="no slip: the stiffness of the backbone is constant"):
+            fit(joint.Backbone.of([0.0, 1.0, 2.0], [0.0, 1.0, 2.0]))
+    for cells in (0, 2.7, np.nan, "many"):
+        with pytest.raises(ValueError, match=f"cells={cells}: must be a whole number of at least 1"):
+            joint.iwan(mindlin.backbone, cells)
+    for edges in ([np.nan], [0.1, np.nan], [0.0, 0.1], [0.2, 0.1]):
+        with pytest.raises(ValueError, match="positive numbers that increase"):
+            joint.iwan(mindlin.backbone, edges)
+    with pytest.raises(ValueError, match="chi of a joint must be a number, not 'x'"):
+        joint.from_json(joint.Segalman(1.0, 1.0, 0.0, 0.0).to_json().replace('"chi": 0.0', '"chi": "x"'))
     with pytest.raises(ValueError, match="two or more cycles that dissipate"):
         joint.segalman(mindlin._replace(cycles=mindlin.cycles[:1]))
     with pytest.raises(ValueError, match="chi above -1"):
@@ -507,6 +520,9 @@ def test_wrong_arguments_are_refused(mindlin: joint.Measurement) -> None:
         joint.BoucWen(1.0, 1.0, 1.0, 0.2)
     with pytest.raises(ValueError, match="is not a name in C"):
         joint.Iwan([1.0], [1.0]).c_source("a joint")
+    for name in ("int", "double", "inline", "size_t", "mfv_joint", "mfv_joint_update", "MFV_JOINT_H", "bool", "_Bool"):
+        with pytest.raises(ValueError, match=f"'{name}' is reserved in C or in the header"):
+            joint.Iwan([1.0], [1.0]).c_source(name)
     with pytest.raises(ValueError, match="must begin at displacement 0"):
         joint.Backbone.of([1.0, 2.0], [0.0, 1.0])
 

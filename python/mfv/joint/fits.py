@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from .._packages import needed
 from .backbone import Backbone
 from .measurement import Measurement
-from .models import BoucWen, Iwan, Segalman, gauss_pair
+from .models import BoucWen, Iwan, Segalman, gauss_pair, number_of_cells
 
 Array = NDArray[np.float64]
 
@@ -23,7 +23,7 @@ def table(backbone: Backbone) -> Iwan:
     """The element that has the backbone exactly, linear between its points and beyond the last: a slider at every bend.
 
     With the points u_i and the slopes k_i up to them, the slider at u_i has the stiffness k_i - k_(i+1). Raises ValueError if the
-    stiffness increases somewhere: use `Backbone.concave`, or `Masing`.
+    stiffness increases somewhere (use `Backbone.concave`, or `Masing`), or is constant.
     """
     slopes = backbone.stiffness
     drops = -np.diff(slopes)
@@ -34,6 +34,8 @@ def table(backbone: Backbone) -> Iwan:
             f"the stiffness increases at the displacement {backbone.displacement[where]:.6g}, from {slopes[where - 1]:.6g} to "
             f"{slopes[where]:.6g}: no springs and sliders in parallel have this backbone; use backbone.concave(), or Masing"
         )
+    if not np.any(bends):
+        raise ValueError("no slip: the stiffness of the backbone is constant, so there are no sliders; load it by a larger force")
     last = float(slopes[-1])
     return Iwan(drops[bends], backbone.displacement[1:-1][bends], last if last > 1.0e-9 * slopes[0] else 0.0)
 
@@ -49,10 +51,10 @@ def iwan(backbone: Backbone, cells: int | ArrayLike = 10) -> Iwan:
     hull = backbone.concave()
     fine = table(hull)
     if np.ndim(cells) == 0:
-        edges = _edges(hull, int(np.asarray(cells)))
+        edges = _edges(hull, number_of_cells(cells))
     else:
         edges = np.asarray(cells, dtype=np.float64)
-        if edges.ndim != 1 or np.any(edges <= 0.0) or np.any(np.diff(edges) <= 0.0):
+        if edges.ndim != 1 or not np.all(edges > 0.0) or not np.all(edges[1:] > edges[:-1]):
             raise ValueError("cells must be a number of them, or their edges: positive numbers that increase")
     pieces = []
     for members in np.split(np.arange(fine.slip.size), np.searchsorted(fine.slip, edges, side="right")):
@@ -65,8 +67,6 @@ def iwan(backbone: Backbone, cells: int | ArrayLike = 10) -> Iwan:
 def _edges(backbone: Backbone, cells: int) -> Array:
     """Displacements that divide a backbone into cells, equally spaced in ln(Q/(F - Q)) between LEAST and 1 - LEAST of the force F at
     the end: small cells both at small forces and near sliding."""
-    if cells < 1:
-        raise ValueError(f"cells={cells}: must be at least 1")
     end = np.log(1.0 / LEAST - 1.0)
     forces = backbone.force[-1] / (1.0 + np.exp(np.linspace(end, -end, cells + 1)[1:-1]))
     return np.asarray(np.interp(forces, backbone.force, backbone.displacement))

@@ -82,9 +82,10 @@ def measure(scene: Scene, force_ratios: Sequence[float] = RATIOS, *, repeats: in
     """Shear a scene: a backbone up to sliding, and cycles between +Q and -Q of growing amplitude.
 
     `scene`: its steps bring the bodies together; the last of them with a normal quantity must prescribe `normal_force`, which is
-    then constant, and may shear them if they end at a tangential force of 0. `force_ratios`: Q/(mu P), increasing, between 0 and 1. `repeats`: cycles of every amplitude, of which the last is
-    returned; with full coupling the first one differs. With refine='edges' in the mesh the intervals are small where slip zones end
-    at these amplitudes; the backbone has the same mesh. Every event is a point, so `accuracy` of the solver must be 0.
+    then constant. They may shear the bodies, but must end at a tangential force of 0. `force_ratios`: Q/(mu P), increasing, between
+    0 and 1. `repeats`: cycles of every amplitude, of which the last is returned; with full coupling the first one differs. With
+    refine='edges' in the mesh the intervals are small where slip zones end at these amplitudes; the backbone has the same mesh.
+    Every event is a point, so `accuracy` of the solver must be 0.
     Raises ValueError, InputError, and the exception of a run that ends early.
     """
     ratios = [float(ratio) for ratio in force_ratios]

@@ -26,6 +26,14 @@ FINEST = 0.02
 #: Distance from its slip, relative to displacement and slip, at which a slider of Iwan slides: a zero increment keeps the tangent.
 ROUND_OFF = 1.0e-15
 
+#: Keywords of C, and names of the header.
+_C_NAMES = (
+    "auto break case char const continue default do double else enum extern float for goto if inline int long register restrict "
+    "return short signed sizeof static struct switch typedef union unsigned void volatile while alignas alignof asm bool constexpr "
+    "false nullptr static_assert thread_local true typeof typeof_unqual "
+    "NULL copysign fabs offsetof ptrdiff_t size_t wchar_t mfv_joint mfv_joint_update MFV_JOINT_H"
+)
+
 #: The evaluator in C.
 _C_HEADER = Path(__file__).with_name("mfv_joint.h")
 
@@ -36,7 +44,9 @@ class Update(NamedTuple):
     """What a displacement leads to."""
 
     force: float  #: [force/length]
-    stiffness: float  #: consistent tangent, derivative of the force with respect to the displacement, on in the same direction (of loading for a zero increment)
+    #: Consistent tangent, derivative of the force with respect to the displacement, on in the same direction; of Iwan's models a
+    #: zero increment keeps it.
+    stiffness: float
     state: Array  #: the new state; the old one is unchanged
 
 
@@ -71,7 +81,18 @@ class _Saved:
             raise ValueError(
                 f"a joint of the model '{cls.NAME}' has the parameters {', '.join(names)}; differing: {', '.join(wrong)}"
             )
+        for each in fields(cls):  # type: ignore[arg-type]
+            value, is_number = values[each.name], each.type == "float"
+            if isinstance(value, list) == is_number or not all(_is_number(item) for item in ([value] if is_number else value)):
+                raise ValueError(
+                    f"{each.name} of a joint must be {'a number' if is_number else 'a list of numbers'}, not {value!r}"
+                )
         return cls(**values)
+
+
+def _is_number(value: Any) -> bool:
+    """Whether a value of a JSON text is a number."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,10 +147,12 @@ class Iwan(_Saved):
     def c_source(self, name: str = "joint") -> str:
         """The joint as a C header that needs no other file: an evaluator without allocation, and the constant `name`.
 
-        Raises ValueError if the name is not one of C.
+        Raises ValueError if the name is not one of C, or has a meaning there or in the header.
         """
         if not (name.isidentifier() and name.isascii()):
             raise ValueError(f"{name!r} is not a name in C")
+        if name in _C_NAMES.split() or name.startswith("_"):
+            raise ValueError(f"{name!r} is reserved in C or in the header; choose another name")
         arrays = [
             f"static const double {name}_{what}[] = {{{', '.join(map(repr, values.tolist()))}}};"
             for what, values in (("stiffness", self.stiffness), ("slip", self.slip))
@@ -403,6 +426,6 @@ def from_json(text: str) -> Iwan | Segalman | Masing | BoucWen:
         raise ValueError(f'not the JSON text of a joint: "format" is not "{FORMAT}"')
     if (version := values.pop("version", None)) != VERSION:
         raise ValueError(f"a joint of version {version!r}; this package reads version {VERSION}")
-    if (name := values.pop("model", None)) not in _MODELS:
+    if not isinstance(name := values.pop("model", None), str) or name not in _MODELS:
         raise ValueError(f"unknown joint model {name!r}; there are {', '.join(_MODELS)}")
     return _MODELS[name]._of_values(values)
