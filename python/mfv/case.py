@@ -292,7 +292,10 @@ class Case:
                     0,
                 )
             except struct.error:
-                numbers = {**targets, "steady_tolerance": steady_tolerance}
+                numbers = {
+                    **{name: value for name, value in targets.items() if value is not None},
+                    "steady_tolerance": steady_tolerance,
+                }
                 raise TypeError(f"targets and steady_tolerance must be numbers, not {_not_numbers(numbers)}") from None
             if turns > 0 or self._is_long or not self._observer.is_idle:
                 watched = turns > 0 or self._is_long
@@ -368,8 +371,8 @@ class Case:
         return found
 
     def save(self, state: State | None = None) -> State:
-        """Save the present state for `restore`. `state`: overwrite this one, which avoids an allocation."""
-        kept = State() if state is None else state
+        """Save the present state for `restore`. `state`: overwrite this one, which avoids an allocation. Raises TypeError."""
+        kept = State() if state is None else _checked_state(state)
         with self._lock:
             self._call("mfv_save", byref(kept._handle))
             kept._status, kept._parameters = self._status, self._parameters_of_state
@@ -380,10 +383,10 @@ class Case:
 
         With history='none' and states='none' in &output any state can be restored in any order; otherwise only states of the
         load history that led to the present one. Derivatives are restored if the state was saved with the parameters of the last
-        `differentiate`. Raises BadArgument.
+        `differentiate`. Raises TypeError, BadArgument.
         """
         with self._lock:
-            self._call("mfv_restore", state._handle)
+            self._call("mfv_restore", _checked_state(state)._handle)
             self._status, self._parameters_of_state = state._status, state._parameters
 
     @contextmanager
@@ -413,6 +416,7 @@ class Case:
         if callback is not None and not callable(callback):
             raise TypeError(f"observe takes a function of the progress, or None, not {callback!r}")
         with self._lock:
+            self._call("mfv_field_count", byref(c_size_t()))  # raises BadHandle for a closed case
             self._observer.tell(callback)
 
     def fields(self) -> list[str]:
@@ -551,10 +555,25 @@ class Case:
         return text_of(buffer)
 
 
+def _checked_state(state: object) -> State:
+    """Raises TypeError for what is not a State."""
+    if not isinstance(state, State):
+        raise TypeError(f"state must be a State, which Case.save returns, not {state!r}")
+    return state
+
+
 def _not_numbers(targets: dict[str, Any]) -> str:
-    """The targets that are given but are not numbers."""
-    wrong = {name: value for name, value in targets.items() if value is not None and not hasattr(value, "__float__")}
-    return ", ".join(f"{name}={value!r}" for name, value in wrong.items())
+    """The targets that are not numbers."""
+    return ", ".join(f"{name}={value!r}" for name, value in targets.items() if not _is_number(value))
+
+
+def _is_number(value: Any) -> bool:
+    """Whether a structure of C takes a value as a double."""
+    try:
+        struct.pack("d", value)
+    except struct.error:
+        return False
+    return True
 
 
 def _freed_with(owner: object, free: Callable[..., object], handle: c_void_p) -> weakref.finalize[..., Any]:

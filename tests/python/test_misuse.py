@@ -6,6 +6,7 @@ from __future__ import annotations
 import copy
 import os
 import pickle
+import re
 import subprocess
 import sys
 import threading
@@ -27,8 +28,8 @@ TEXT = """&scene coupling='goodman' / &body shape='half_plane', shear_modulus=1.
 def case() -> Iterator[mfv.Case]:
     with mfv.Case.from_text(TEXT) as made:
         yield made
-        made.observe(None)
         if made._handle:
+            made.observe(None)
             still_works(made)
 
 
@@ -118,6 +119,8 @@ def test_a_closed_case_cannot_be_used() -> None:
         lambda: case.loads,
         lambda: case.x,
         lambda: case.message,
+        lambda: case.observe(print),
+        lambda: case.observe(None),
         lambda: copy.deepcopy(case),
     ):
         with pytest.raises(errors.BadHandle):
@@ -125,6 +128,24 @@ def test_a_closed_case_cannot_be_used() -> None:
     other.restore(state)
     still_works(other)
     other.close()
+
+
+def test_what_is_not_a_state_is_refused(case: mfv.Case) -> None:
+    for wrong in (None, 3, case):
+        with pytest.raises(TypeError, match="state must be a State, which Case.save returns, not "):
+            case.restore(wrong)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="state must be a State, which Case.save returns, not 3"):
+        case.save(3)  # type: ignore[arg-type]
+
+
+def test_what_is_not_a_number_is_named(case: mfv.Case) -> None:
+    for keys, named in (
+        ({"normal_force": np.array([1e-4])}, "normal_force=array([0.0001])"),
+        ({"normal_force": 1e-4, "steady_tolerance": None}, "steady_tolerance=None"),
+        ({"normal_force": "a", "shift": [1.0], "approach": None}, "normal_force='a', shift=[1.0]"),
+    ):
+        with pytest.raises(TypeError, match=re.escape(f"must be numbers, not {named}") + "$"):
+            case.advance(**keys)
 
 
 def test_arrays_that_do_not_fit_are_refused(case: mfv.Case) -> None:
