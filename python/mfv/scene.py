@@ -634,6 +634,8 @@ def _set_key(handle: c_void_p, key: str, value: Any) -> int:
         status = library().mfv_scene_set_real(handle, name, float(value))
     elif isinstance(value, (Sequence, np.ndarray)):
         values = _numbers(np.atleast_1d(value), key)
+        if values.ndim != 1:
+            raise ValueError(f"{key} must have one dimension, not the shape {values.shape}")
         status = library().mfv_scene_set_reals(handle, name, real_pointer(values), values.size)
     else:
         raise TypeError(f"{key}: must be a text, a truth value, a number or an array, not {value!r}")

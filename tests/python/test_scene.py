@@ -223,6 +223,16 @@ def test_bodies_can_be_subclassed() -> None:
     assert scene.upper.keys() == DISK.keys()
 
 
+def test_lists_of_two_dimensions_are_refused() -> None:
+    for keys, name in (
+        ({"friction": mfv.Friction.coulomb(np.full((61, 1), 0.5))}, "friction%mu"),
+        ({"friction": mfv.Friction.coulomb([[0.1, 0.2], [0.3, 0.4]])}, "friction%mu"),
+        ({"history": mfv.History(tangential_force=[[0.0, 1.0e-4], [0.0, 0.0]])}, "history%tangential_force"),
+    ):
+        with pytest.raises(ValueError, match=f"{name} must have one dimension, not the shape"):
+            cylinder(PRESS, **keys).contact()
+
+
 def test_arrays_that_are_no_real_numbers_are_refused() -> None:
     masked = np.ma.masked_less(np.linspace(0.3, 0.7, 61), 0.4)
     with pytest.raises(TypeError, match="friction%mu: must be an array without masked values"):
