@@ -12,6 +12,7 @@ import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -39,6 +40,9 @@ _COLUMNS = {
     "normal_force": ("normal_force", "p"),
     "test": ("test",),
 }
+
+#: Annotations of keys whose values are real numbers.
+_REAL = ("float", "float | None", "Coefficient | None")
 
 #: Half the step of the central differences, in the logarithm of a parameter (docs/identify.md has the measurements).
 _DIFFERENCE = 0.05
@@ -95,10 +99,10 @@ class Loop:
             )
         if self.drive not in ("tangential_force", "shift"):
             raise input_error(f"{self.name}: drive must be 'tangential_force' or 'shift', not {self.drive!r}")
-        if self.cycles_before < 0:
-            raise input_error(f"{self.name}: cycles_before must be at least 0")
-        if any(noise is not None and not noise >= 0.0 for noise in (self.force_noise, self.shift_noise)):
-            raise input_error(f"{self.name}: force_noise and shift_noise must be at least 0")
+        if not isinstance(self.cycles_before, Integral) or self.cycles_before < 0:
+            raise input_error(f"{self.name}: cycles_before must be a whole number of at least 0")
+        if not all(noise is None or (isinstance(noise, Real) and noise >= 0.0) for noise in (self.force_noise, self.shift_noise)):
+            raise input_error(f"{self.name}: force_noise and shift_noise must be numbers of at least 0")
 
     @classmethod
     def planned(
@@ -642,6 +646,8 @@ class _Problem:
                     raise input_error(
                         f"'{key}': no such parameter; free are keys of bodies, friction and mesh, and {RIG_STIFFNESS}"
                     )
+                if parts[group]._group().__annotations__.get(name, "float") not in _REAL:
+                    raise input_error(f"'{key}': cannot be estimated, since its values are not real numbers")
                 try:
                     setattr(parts[group], name, float(value) * factor)
                 except AttributeError as error:

@@ -264,6 +264,8 @@ def test_errors_name_the_remedy() -> None:
     for free, message in (
         ({"friction%nu": 0.3}, "'friction%nu': Friction has no 'nu'"),
         ({"step(1)%shift": 0.3}, "no such parameter"),
+        ({"mesh%nodes": 61}, "'mesh%nodes': cannot be estimated, since its values are not real numbers"),
+        ({"friction%law": 1.0}, "'friction%law': cannot be estimated"),
         ({"friction%mu": -1.0}, "one positive start value"),
         ({}, "at least one loop and one free parameter"),
         ({"friction%mu": 0.2}, "ends before the last row (loop: "),
@@ -274,6 +276,13 @@ def test_errors_name_the_remedy() -> None:
         Loop(loop.tangential_force, loop.shift, np.linspace(50.0, 100.0, loop.shift.size))
     with pytest.raises(errors.InputError, match="give shift_noise"):
         identify.plan(cylinders(), Loop.planned(P, 20.0), TRUTH)
+    for keys, message in (
+        ({"cycles_before": 1.5}, "cycles_before must be a whole number of at least 0"),
+        ({"cycles_before": "1"}, "cycles_before must be a whole number of at least 0"),
+        ({"shift_noise": "a"}, "force_noise and shift_noise must be numbers of at least 0"),
+    ):
+        with pytest.raises(errors.InputError, match=message):
+            Loop(loop.tangential_force, loop.shift, P, **keys)
     with pytest.raises(errors.InputError, match="at least 5 rows"):
         Loop([1.0, 2.0], [1.0, 2.0], P)
 
