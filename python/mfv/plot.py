@@ -122,8 +122,7 @@ def cycles_figure(result: Result) -> Figure:
 
     Raises ValueError without cycles.
     """
-    if not result.cycles:
-        raise ValueError("this result has no cycles; give a step cycles=...")
+    _check_cycles(result)
     turns = _turns_in_the_last_cycle(result)
     drawable = [
         (loop, "shift" in result.history and not turns),
@@ -135,6 +134,12 @@ def cycles_figure(result: Result) -> Figure:
     if not panels:
         raise ValueError("no cycles to draw: the result has neither a history nor dissipation by friction")
     return _panels_in_a_row(panels, result, None, _cycle_caption(result))
+
+
+def _check_cycles(result: Result) -> None:
+    """Raises ValueError without cycles."""
+    if not result.cycles:
+        raise ValueError("this result has no cycles; give a step cycles=...")
 
 
 def _panels_in_a_row(panels: Sequence[Panel], result: Result, step: int | None, caption: str) -> Figure:
@@ -411,9 +416,12 @@ def loop(result: Result, ax: Axes | None = None, step: int | None = None) -> Axe
 
 
 def nonlinear_loop(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
-    """Tangential force over the non-linear part of the shift, which is due to slip."""
-    ax = _axes(ax)
+    """Tangential force over the non-linear part of the shift, which is due to slip. Raises ValueError without cycles."""
+    _check_cycles(result)
     history = result.history
+    if "nonlinear_shift" not in history:
+        raise ValueError("no non-linear shift to draw: the result has no history, or its shift is constant")
+    ax = _axes(ax)
     ax.plot(history.nonlinear_shift, history.tangential_force, color=NUMBERS, linewidth=0.8)
     across = _label("non-linear shift", "U - Q/k", history.unit("nonlinear_shift"))
     up = _label("tangential force", "Q", history.unit("tangential_force"))
@@ -421,7 +429,8 @@ def nonlinear_loop(result: Result, ax: Axes | None = None, step: int | None = No
 
 
 def friction_work(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
-    """Energy that the last cycle dissipates per unit of surface, over x."""
+    """Energy that the last cycle dissipates per unit of surface, over x. Raises ValueError without cycles."""
+    _check_cycles(result)
     ax = _axes(ax)
     cycles = result.cycles
     ax.plot(result.mesh.x, cycles.friction_work, color=NUMBERS, linewidth=0.8, **_points(result.mesh.x.size))

@@ -41,6 +41,12 @@ def pressed() -> mfv.Result:
     return cylinder(PRESS, mfv.Step(rotation=1.0e-6)).run(check=True)
 
 
+def test_panels_of_cycles_need_cycles(pressed: mfv.Result) -> None:
+    for panel in (mfv.plot.nonlinear_loop, mfv.plot.friction_work, mfv.plot.cycles_figure):
+        with pytest.raises(ValueError, match="this result has no cycles; give a step cycles="):
+            panel(pressed)
+
+
 # --- xarray ---
 
 
