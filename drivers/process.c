@@ -9,6 +9,7 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 /* Call this first. A standard stream that the caller has closed is opened on /dev/null; otherwise the next file, such as a result,
@@ -29,21 +30,27 @@ void mfv_use_one_thread(void) {
 }
 
 #ifdef __ELF__
-/* The same for OpenBLAS that is linked statically: it starts its threads, which spin for some milliseconds, before main.
-   With glibc on Linux, freed memory is kept and lies in large pages: arrays along the nodes come and go, and new pages cost more
-   than the arithmetic on them. Memory that is reserved here is not used until it is needed. */
-__attribute__((constructor(101))) static void start_process(void) {
-  setenv("OPENBLAS_NUM_THREADS", "1", 1);
-#if defined(__GLIBC__) && defined(MADV_HUGEPAGE)
-  enum { reserve = 1 << 26, most_on_heap = 1 << 25, keep = 1 << 30, grow = 1 << 20 };
+/* The same for OpenBLAS that is linked statically: it starts its threads, which spin for some milliseconds, before main. */
+__attribute__((constructor(101))) static void start_one_thread(void) { setenv("OPENBLAS_NUM_THREADS", "1", 1); }
+#endif
+
+#if defined(__GLIBC__) && defined(__LP64__) && defined(MADV_HUGEPAGE)
+/* Keep freed memory, and let the first of it lie in large pages: arrays along the nodes come and go, and new pages cost more than the
+   arithmetic on them. Only addresses are reserved; not where these are limited. */
+__attribute__((constructor(102))) static void keep_memory(void) {
+  enum { reserve = 1 << 26, most_on_heap = 1 << 25, keep = 1 << 30, pad = 1 << 20 };
+  struct rlimit addresses, data;
   void *volatile block;
+  if (getrlimit(RLIMIT_AS, &addresses) != 0 || addresses.rlim_cur != RLIM_INFINITY) return;
+  if (getrlimit(RLIMIT_DATA, &data) != 0 || data.rlim_cur != RLIM_INFINITY) return;
   mallopt(M_MMAP_THRESHOLD, most_on_heap);
   mallopt(M_TRIM_THRESHOLD, keep);
   mallopt(M_TOP_PAD, reserve);
-  block = malloc(grow);
-  free(block);
+  block = malloc(pad);
+  mallopt(M_TOP_PAD, pad);
+  if (block == NULL) return;
   madvise((char *)sbrk(0) - reserve, reserve, MADV_HUGEPAGE);
-#endif
+  free(block);
 }
 #endif
 

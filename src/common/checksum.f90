@@ -14,17 +14,20 @@ contains
    pure subroutine add_to_checksum(bytes, checksum)
       integer(int8), intent(in) :: bytes(:)
       integer(int64), intent(inout) :: checksum
-      integer(int64) :: rest, i, table(0:255)
-      integer :: bit, byte
+      integer(int64) :: rest, i, table(0:15)
+      integer :: bit, half, nibble
 
-      ! What a byte does to the rest.
-      table = [(int(byte, int64), byte=0, 255)]
-      do bit = 1, 8
+      ! What four bits do to the rest.
+      table = [(int(nibble, int64), nibble=0, 15)]
+      do bit = 1, 4
          table = merge(ieor(shiftr(table, 1), polynomial), shiftr(table, 1), btest(table, 0))
       end do
       rest = not(checksum)
       do i = 1, size(bytes, kind=int64)
-         rest = ieor(shiftr(rest, 8), table(iand(ieor(rest, int(bytes(i), int64)), 255_int64)))
+         rest = ieor(rest, iand(int(bytes(i), int64), 255_int64))
+         do half = 1, 2
+            rest = ieor(shiftr(rest, 4), table(iand(rest, 15_int64)))
+         end do
       end do
       checksum = not(rest)
    end subroutine add_to_checksum

@@ -59,6 +59,7 @@ contains
             self%half(block) = 0.5_wp*(right - left)
          end associate
          do j = begin_of(block), end_of(self, block)
+            if (.not. to(j) > from(j)) cycle
             call add_moments((from(j) - self%middle(block))/self%half(block), (to(j) - self%middle(block))/self%half(block), &
                              self%half(block)*first(j), self%half(block)*last(j), self%moments(:, block))
          end do
@@ -80,8 +81,8 @@ contains
       end_of = min(block*block_size, size(self%from))
    end function end_of
 
-   !> Add the moments of an element on a block from -1 to 1, with tractions times its half-length. Errors are those of round-off
-   !> in the moments of the block.
+   !> Add the moments of an element on a block from -1 to 1, with tractions times its half-length. Errors are some hundred times
+   !> the round-off in the moments of the block.
    pure subroutine add_moments(from, to, first, last, moments)
       real(wp), intent(in) :: from, to
       complex(wp), intent(in) :: first, last

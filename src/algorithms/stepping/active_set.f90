@@ -250,11 +250,12 @@ contains
       if (.not. any(anew)) return
       status = path%state%status
       slipping = merge(merge(node_slip_left, node_slip_right, fields%shear > 0.0_wp), status, anew)
-      if (.not. any(holds(slipping))) return
+      if (.not. any(holds(slipping)) .and. segment%load(motion_shift)%control == control_force) return
       path%state%status = slipping
       call find_rates(path, segment, 1.0_wp, fields, rates, found)
       path%state%status = status
-      if (found) where (anew .and. .not. slipping_back(path, slipping, rates)) wanted = slipping
+      if (.not. found) return
+      where (anew .and. slipping_along(path, slip_sign(slipping), rates)) wanted = slipping
    end subroutine find_slipping_on
 
    !> The rates at the fraction `done` of the segment, per unit of load, for the statuses of `path`. `fields`: the fields there, a
@@ -285,12 +286,22 @@ contains
       integer, intent(in) :: status(:)
       type(contact_fields_type), intent(in) :: rates
       logical :: back(size(status))
+
+      back = slipping_along(path, -slip_sign(status), rates)
+   end function slipping_back
+
+   !> The nodes that slip in a `direction` (1, -1; 0: none) at the given rates, shape (nodes).
+   pure function slipping_along(path, direction, rates) result(along)
+      class(contact_path_type), intent(in) :: path
+      integer, intent(in) :: direction(:)
+      type(contact_fields_type), intent(in) :: rates
+      logical :: along(size(direction))
       real(wp), parameter :: negligible = 1.0e-9_wp
-      real(wp) :: slip(size(back))
+      real(wp) :: slip(size(along))
 
       slip = rates%slip()
-      back = -slip_sign(status)*slip > max(negligible, path%system%rate_tolerance)*maxval(abs(slip))
-   end function slipping_back
+      along = direction*slip > max(negligible, path%system%rate_tolerance)*maxval(abs(slip))
+   end function slipping_along
 
    !> Whether a node that was slipping at the start slips against its slip over the increment: it has stuck in between, where no
    !> front is known to have passed.

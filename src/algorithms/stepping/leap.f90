@@ -211,7 +211,7 @@ contains
                              few*abs(chain%by_slopes - chain%node_wise)/6.0_wp, error)
       if (ubound(chain%samples, 1) >= max(many, 2*chain%increments)) &
          chain%work_error = max(chain%work_error, abs(chain%by_slopes - coarse)/3.0_wp)
-      if (chain%node_wise_error <= chain%work_error) then
+      if (chain%work < 0.0_wp .or. chain%node_wise_error <= chain%work_error) then
          chain%work = chain%node_wise
          chain%work_error = chain%node_wise_error
       end if

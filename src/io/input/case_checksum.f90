@@ -21,26 +21,30 @@ contains
 
       checksum = 0
       call add_text_to_checksum(case%text, checksum)
-      ! Products in place of arrays and of the matrix; every entry contributes.
-      call add_to_checksum(transfer([weighted(model%x), weighted(model%initial_gap), model%compliance%modulus, &
-                                     weighted(model%width), weighted(model%static_friction), weighted(model%kinetic_friction)], &
-                                    mold), checksum)
+      call add_to_checksum(transfer([folded(model%x), folded(model%initial_gap), folded(model%width), &
+                                     folded(model%static_friction), folded(model%kinetic_friction)], mold), checksum)
+      call add_to_checksum(transfer(model%compliance%modulus, mold), checksum)
       do i = 1, size(case%scene%steps)
          call add_to_checksum(transfer(case%scene%steps(i)%target, mold), checksum)
          if (allocated(case%scene%steps(i)%path)) call add_to_checksum(transfer(case%scene%steps(i)%path, mold), checksum)
       end do
+      ! A product in place of the matrix; every entry contributes.
       if (.not. allocated(model%scene%lower%matrix)) return
       associate (matrix => model%scene%lower%matrix)
          call add_to_checksum(transfer(matmul(matrix, sqrt([(real(i, wp), i=1, size(matrix, 2))])), mold), checksum)
       end associate
    end subroutine find_case_checksum
 
-   !> A sum in which all values have different weights.
-   pure real(wp) function weighted(values)
+   !> All bits of some values: each number is combined with what came before, turned by some bits.
+   pure integer(int64) function folded(values)
       real(wp), intent(in) :: values(:)
+      integer, parameter :: turn = 7
       integer :: i
 
-      weighted = sum(values*[(sqrt(real(i, wp)), i=1, size(values))])
-   end function weighted
+      folded = 0
+      do i = 1, size(values)
+         folded = ieor(ishftc(folded, turn), transfer(values(i), folded))
+      end do
+   end function folded
 
 end module mfv_case_checksum

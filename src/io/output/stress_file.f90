@@ -60,7 +60,8 @@ contains
       call read_text(path, bytes, error, any_length=.true.)
       call read_interior(path, request, case, interior, result, error)
       if (allocated(error)) then
-         if (index(error%message, path) /= 1) error%message = path//': '//error%message
+         if (all([index(error%message, path//':'), index(error%message, path//' ')] /= 1)) &
+            error%message = path//': '//error%message
          return
       end if
       result%half_width = interior%half_width()
