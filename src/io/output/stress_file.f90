@@ -56,12 +56,15 @@ contains
       type(interior_type) :: interior
       type(case_type) :: case
       character(:), allocatable :: bytes
+      integer(hid_t) :: file
 
       call read_text(path, bytes, error, any_length=.true.)
-      call read_interior(path, request, case, interior, result, error)
+      ! A file that cannot be read is no HDF5 file either; this message names it.
+      call open_to_read(path, file, error)
+      if (allocated(error)) return
+      call read_interior(file, request, case, interior, result, error)
       if (allocated(error)) then
-         if (all([index(error%message, path//':'), index(error%message, path//' ')] /= 1)) &
-            error%message = path//': '//error%message
+         error%message = path//': '//error%message
          return
       end if
       result%half_width = interior%half_width()
@@ -76,15 +79,14 @@ contains
       call write_stresses(path, bytes, request, case, result, error)
    end subroutine add_stresses
 
-   !> The body and its tractions from the file.
-   subroutine read_interior(path, request, case, interior, result, error)
-      character(*), intent(in) :: path
+   !> The body and its tractions from the open file, which is closed.
+   subroutine read_interior(file, request, case, interior, result, error)
+      integer(hid_t), intent(in) :: file
       type(stress_request_type), intent(in) :: request
       type(case_type), intent(out) :: case
       type(interior_type), intent(out) :: interior
       type(stress_result_type), intent(inout) :: result
       type(error_type), allocatable, intent(out) :: error
-      integer(hid_t) :: file
       character(:), allocatable :: text, source, directory, state, position, bulk_path
       !> Limit of numbers in a result; products of larger ones would overflow.
       real(wp), parameter :: largest_size = 1.0e100_wp
@@ -92,8 +94,6 @@ contains
       real(wp) :: none
       logical :: available
 
-      call open_to_read(path, file, error)
-      if (allocated(error)) return
       state = 'state'
       bulk_path = 'summary'
       if (request%step > 0) then
