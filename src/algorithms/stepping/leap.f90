@@ -211,11 +211,17 @@ contains
                              few*abs(chain%by_slopes - chain%node_wise)/6.0_wp, error)
       if (ubound(chain%samples, 1) >= max(many, 2*chain%increments)) &
          chain%work_error = max(chain%work_error, abs(chain%by_slopes - coarse)/3.0_wp)
-      if (chain%work < 0.0_wp .or. chain%node_wise_error <= chain%work_error) then
-         chain%work = chain%node_wise
-         chain%work_error = chain%node_wise_error
-      end if
+      call prefer_node_wise(chain)
    end subroutine weigh_samples
+
+   !> Take the dissipation node by node if its error is not larger, or if the other one is negative.
+   pure subroutine prefer_node_wise(chain)
+      type(chain_type), intent(inout) :: chain
+
+      if (.not. (chain%work < 0.0_wp .or. chain%node_wise_error <= chain%work_error)) return
+      chain%work = chain%node_wise
+      chain%work_error = chain%node_wise_error
+   end subroutine prefer_node_wise
 
    !> Allow errors of iterative solvers that are negligible beside that of a chain: of the rates, only signs and corrections of
    !> slips are used. Without coupling this would save nothing: the preconditioner is exact.
@@ -444,10 +450,7 @@ contains
             finer%work_error = error
          end if
       end if
-      if (finer%work < 0.0_wp .or. finer%node_wise_error <= finer%work_error) then
-         finer%work = finer%node_wise
-         finer%work_error = finer%node_wise_error
-      end if
+      call prefer_node_wise(finer)
    end subroutine find_dissipation
 
    !> The friction dissipation per unit of the interval at the ends of the increments of a chain, force, shape (increments).
