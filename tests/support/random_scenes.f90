@@ -29,12 +29,10 @@ module test_random_scenes_support
 
    !> Stops a run with chatter after a number of increments.
    type, extends(observer_type) :: patience_type
-      integer :: increments = 0
+      integer :: increments = 0, most_increments = 400
    contains
       procedure :: notify
    end type patience_type
-
-   integer, parameter :: most_increments = 400
 
    !> Scales of a contact: force P, half-width, approach and shift, coefficient of friction.
    type :: sizes_type
@@ -289,7 +287,7 @@ contains
       logical, intent(out) :: stop_wanted
 
       self%increments = self%increments + 1
-      stop_wanted = self%increments > most_increments
+      stop_wanted = self%increments > self%most_increments
    end subroutine notify
 
 end module test_random_scenes_support

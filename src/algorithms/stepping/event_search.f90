@@ -72,9 +72,9 @@ contains
             mu = full*model%static_friction(i)
             if (mu*rate%pressure(i) - abs(rate%shear(i)) < 0.0_wp) then
                if (.not. (soft_limit .and. .not. state%pressure(i) > 0.0_wp .and. rate%pressure(i) > least_rate)) then
-                  call consider(event_slip_right, mu*state%pressure(i) + state%shear(i), &
+                  call consider(event_slip_right, below_limit(mu*state%pressure(i), -state%shear(i)), &
                                 mu*rate%pressure(i) + rate%shear(i), max(mu, 1.0_wp)*traction_scale)
-                  call consider(event_slip_left, mu*state%pressure(i) - state%shear(i), &
+                  call consider(event_slip_left, below_limit(mu*state%pressure(i), state%shear(i)), &
                                 mu*rate%pressure(i) - rate%shear(i), max(mu, 1.0_wp)*traction_scale)
                end if
             end if
@@ -125,6 +125,16 @@ contains
          violations%speed(i) = -slack_rate/scale
       end subroutine consider
    end subroutine find_violations
+
+   !> What a traction lacks to a limit; none within its round-off, where a node that approaches its limit slowly (Dahl's law) would
+   !> stay for ever.
+   pure real(wp) function below_limit(limit, traction)
+      real(wp), intent(in) :: limit, traction
+      real(wp), parameter :: round_off = 8.0_wp*epsilon(1.0_wp)
+
+      below_limit = limit - traction
+      if (below_limit <= round_off*limit) below_limit = 0.0_wp
+   end function below_limit
 
    !> The largest rates of tractions and of motions.
    pure subroutine find_scales(rate, traction_scale, motion_scale)
