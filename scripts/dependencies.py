@@ -1,9 +1,10 @@
 """The folders of src and what they use of each other, from the sources. Standard library only.
 
-    python3 scripts/dependencies.py [docs/pictures/dependencies.svg]
+    python3 scripts/dependencies.py [--check] [docs/pictures/dependencies.svg]
 
 Fails, with the lines at fault, if a module uses one of a folder above its own; the order is that of mfv_add_folder in
-src/CMakeLists.txt. (The compiler rejects it too: it does not find the module.) Draws the picture if its name is given.
+src/CMakeLists.txt. (The compiler rejects it too: it does not find the module.) Draws the picture if its name is given; with --check it
+fails if the picture does not show the sources.
 """
 
 import argparse
@@ -15,6 +16,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 ROW, BOX, WIDTH = 40, 560, 880
 LEFT = BOX + 10
+MANY_USES = 5, 20
 
 CONTENTS = {
     "common": "kinds, errors, statuses, text, GSL, FFTW, safe files",
@@ -73,19 +75,19 @@ def read_arrows(order, modules):
 
 
 def draw(order, arrows):
-    """An SVG: the folders from above to below, an arc for each pair, as wide as the number of uses."""
+    """An SVG: the folders from above to below, an arc for each pair, wide for many uses."""
     height = ROW * len(order) + 20
     middle = {folder: 10 + ROW * (len(order) - 1 - i) + ROW // 2 for i, folder in enumerate(order)}
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" font-family="sans-serif" font-size="15">',
         f'<rect width="{WIDTH}" height="{height}" fill="white"/>',
     ]
-    for (user, used), number in sorted(arrows.items(), key=lambda item: -item[1]):
+    for (user, used), number in sorted(arrows.items()):
         top, bottom = middle[user], middle[used]
         reach = LEFT + 24 * (bottom - top) // ROW + 8
         lines.append(
             f'<path d="M {LEFT} {top} C {reach} {top}, {reach} {bottom}, {LEFT} {bottom}" fill="none" stroke="#36648b" '
-            f'stroke-opacity="0.35" stroke-width="{max(1.0, number**0.5):.1f}"/>'
+            f'stroke-opacity="0.35" stroke-width="{1 + 2 * sum(number >= many for many in MANY_USES)}"/>'
         )
     for folder in order:
         y = middle[folder]
@@ -100,12 +102,15 @@ def draw(order, arrows):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("picture", type=Path, nargs="?")
+    parser.add_argument("--check", action="store_true", help="compare the picture instead of drawing it")
     arguments = parser.parse_args()
     order, modules = read_folders()
     arrows, wrong = read_arrows(order, modules)
     if wrong:
         sys.exit("\n".join(["a folder uses one above it:", *wrong]))
-    if arguments.picture:
+    if arguments.check and arguments.picture.read_text() != draw(order, arrows):
+        sys.exit(f"{arguments.picture} does not show the sources; run python3 scripts/dependencies.py {arguments.picture}")
+    if arguments.picture and not arguments.check:
         arguments.picture.write_text(draw(order, arrows))
 
 

@@ -168,7 +168,7 @@ contains
       scene%wear%block = reader%integer_value('wear', 1, 'block')
       if (.not. scene%friction%acts()) then
          call reader%complain('wear', 1, 'coefficient', 'needs a &friction law with a coefficient above 0', error)
-      else if (scene%wear%law == wear_archard .and. has_word('weakening dahl', reader%text_value('friction', 1, 'law'))) then
+      else if (scene%wear%law == wear_archard .and. .not. scene%friction%is_linear()) then
          call reader%complain('wear', 1, 'law', "'archard' needs friction with law='coulomb' or 'static_kinetic', whose work "// &
                               "gives the product of pressure and slip; use law='work'", error)
       else if (size(scene%steps) > 0 .and. .not. any(scene%steps%cycles > 0)) then
