@@ -142,11 +142,13 @@ def test_summary_says_what_came_out(tmp_path):
         assert word in run.stdout, word
 
 
-def test_summary_says_where_tension_is_singular(tmp_path):
+@pytest.mark.parametrize("mesh", ["", "&mesh nodes=25, half_width=1.25 /\n", "&mesh nodes=101, half_width=1.25 /\n"])
+def test_summary_says_where_tension_is_singular(mesh, tmp_path):
+    """Also where the interval of the outermost node reaches beyond the corner."""
     (tmp_path / "punch.nml").write_text(
         "&body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /\n"
         "&body shape='flat_punch', half_width=1.0, rigid=.true. /\n&friction law='coulomb', mu=0.5 /\n"
-        "&step normal_force=1.0e-3 /\n&step tangential_force=2.0e-4 /\n"
+        f"{mesh}&step normal_force=1.0e-3 /\n&step tangential_force=2.0e-4 /\n"
     )
     run = mfv_run("punch.nml", cwd=tmp_path)
     assert "largest tension     lower body singular at a sharp corner\n" in run.stdout

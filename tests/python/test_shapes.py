@@ -174,7 +174,7 @@ def test_parabolas_have_no_end() -> None:
 
 
 def test_warnings_of_surfaces_that_end() -> None:
-    """Disk, profile and wedge of a file; but not the corner of a flat punch."""
+    """Disk and profile; the corner of a flat punch only where the intervals miss it."""
     lower = mfv.Body.half_plane(youngs_modulus=1.0, poisson_ratio=0.0)
     x = np.linspace(-1.0, 1.0, 2001)
     keys: dict[str, Any] = {"mesh": mfv.Mesh(nodes=101, half_width=1.25), "steps": [mfv.Step(normal_force=2.5)]}
@@ -183,6 +183,9 @@ def test_warnings_of_surfaces_that_end() -> None:
         assert ["reaches the end of the surface of the upper body" in text for text in warnings(result)] == [True]
     punch = mfv.run(mfv.Scene(lower, mfv.Body.flat_punch(1.0), **keys))
     assert len(warnings(punch)) == 0
+    keys["mesh"] = mfv.Mesh(nodes=25, half_width=1.25)
+    wide = mfv.run(mfv.Scene(lower, mfv.Body.flat_punch(1.0), **keys))
+    assert ["the contact ends at x = -1.05 instead" in text for text in warnings(wide)] == [True]
 
 
 def test_warnings_of_rounded_edges_that_the_mesh_does_not_resolve() -> None:

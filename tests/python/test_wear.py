@@ -93,6 +93,28 @@ def test_the_size_of_the_blocks_has_an_error_of_first_order() -> None:
     assert chosen[1] < 0.5 * chosen[0] < 1e-3
 
 
+def test_a_first_cycle_unlike_the_others_wears_alone() -> None:
+    """Pressed with friction and coupling, the first cycle dissipates 2.4 times as much as those that follow."""
+    steps = [mfv.Step(normal_force=100.0), mfv.Step(shift=5.0e-4), mfv.Step(shift=-5.0e-4, cycles=200)]
+    results = [
+        mfv.Scene(
+            mfv.Body.half_plane(youngs_modulus=70000, poisson_ratio=0.33),
+            mfv.Body.disk(10, rigid=True),
+            mesh=mfv.Mesh(nodes=101, half_width=0.17),
+            friction=mfv.Friction.coulomb(0.6),
+            wear=mfv.Wear(coefficient=1.0e-9, **wear),
+            steps=steps,
+        ).run(check=True)
+        for wear in ({}, {"block": 1})
+    ]
+    blocks, cycles = (result.cycles for result in results)
+    assert cycles.dissipation[0] > 2.0 * cycles.dissipation[1]
+    assert len(blocks.block) <= 5 and blocks.block.sum() == 200
+    assert blocks.dissipation[-1] == pytest.approx(cycles.dissipation[-1], rel=1e-4)
+    depths = [result.state.wear_depth for result in results]
+    np.testing.assert_allclose(depths[0], depths[1], atol=1e-3 * depths[1].max())
+
+
 def test_a_scar_grows_to_the_width_of_its_volume() -> None:
     """Worn far beyond Hertz's contact, the flat is a chord of the cylinder: area 2 a^3/(3 R), under a uniform pressure. Every point
     slides over 4 (U - U_e) in a cycle, U_e the elastic shift at the limit of sliding."""

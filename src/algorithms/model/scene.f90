@@ -335,19 +335,18 @@ contains
       logical, intent(out) :: available
       integer, intent(in), optional :: fewest_elements
       type(zone_list_type) :: zones
-      real(wp), parameter :: near = 1.0e-6_wp
       real(wp) :: ratio
-      integer :: side
+      integer :: i, side
 
       ratio = 1.0_wp
       if (self%mesh%radial) ratio = merge(self%upper%radius, self%lower%radius, upper)/self%arc_radius()
       zones%contact = pairs(contact_edge)
       zones%stick = ratio*pairs(stick_edge)
       allocate (zones%sharp(2, size(zones%contact, 2)))
-      do side = 1, 2
-         associate (edge => zones%contact(side, :), inwards => (3 - 2*side)*near*(zones%contact(2, :) - zones%contact(1, :)))
-            zones%sharp(side, :) = self%touchable(edge + inwards) .and. .not. self%touchable(edge - inwards)
-         end associate
+      do i = 1, size(zones%contact, 2)
+         do side = 1, 2
+            zones%sharp(side, i) = ends_with_body(self, arc, width, zones%contact(side, i), 2*side - 3)
+         end do
       end do
       zones%contact = ratio*zones%contact
       if (self%coupling == coupling_full) zones%beta = self%dundurs_beta()
@@ -361,6 +360,20 @@ contains
       end if
       inside%bulk = bulk
    end subroutine interior
+
+   !> Whether a contact zone ends on the left (`side` -1) or right (1) where a body does, at an `edge` that is the end of an interval:
+   !> the pressure does not vanish there. `arc`, `width`: see interior.
+   pure logical function ends_with_body(self, arc, width, edge, side)
+      class(scene_type), intent(in) :: self
+      real(wp), intent(in) :: arc(:), width(:), edge
+      integer, intent(in) :: side
+      real(wp), parameter :: near = 1.0e-6_wp
+      integer :: node
+
+      node = minloc(abs(arc + side*0.5_wp*width - edge), dim=1)
+      ends_with_body = abs(arc(node) + side*0.5_wp*width(node) - edge) <= near*width(node) .and. &
+                       .not. self%touchable(arc(node) + side*width(node))
+   end function ends_with_body
 
    !> The finite values as pairs, shape (2, pairs); none if they are not ascending.
    pure function pairs(edges)

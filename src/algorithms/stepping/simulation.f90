@@ -16,7 +16,7 @@ module mfv_simulation
    use mfv_leap, only: apply_by_large_increments
    use mfv_load_way, only: load_summary_type
    use mfv_motions, only: motions, motion_count, motion_approach, motion_wear, control_keep, control_force, control_displacement
-   use mfv_node_status, only: event_none, event_step_end, event_stopped
+   use mfv_node_status, only: event_none, event_step_end, event_stopped, in_contact
    use mfv_observer, only: observer_type
    use mfv_scene
    use mfv_slip_zones, only: segment_start_type, slip_record_type
@@ -266,8 +266,8 @@ contains
          start = self%padded(self%marks(mark_cycle_start))
          allocate (depth(self%contact%model%nodes()))
          call find_wear_block(self%contact, self%contact%state%friction_work - start%friction_work, &
-                              step%cycles - self%leg%number/turns + 1, self%load(motion_approach)%control == control_force, &
-                              cycles, depth)
+                              most_worn_at_once(self, step%cycles - self%leg%number/turns + 1), &
+                              self%load(motion_approach)%control == control_force, cycles, depth)
          if (.not. self%contact%lengthens_for(depth > 0.0_wp)) exit
          deallocate (depth)
       end do
@@ -281,6 +281,29 @@ contains
       self%leg%number = self%leg%number + turns*(cycles - 1)
       self%cycles(self%cycle_count)%block = cycles
    end subroutine apply_wear
+
+   !> Most cycles of a block of wear that begins with the present one, at most `remaining`. The first cycle of a step wears alone,
+   !> since it often dissipates otherwise than those that follow. While the dissipation of computed cycles still changes by more than
+   !> the tolerance, blocks become twice as long at most.
+   pure integer function most_worn_at_once(self, remaining) result(most)
+      class(simulation_type), intent(in) :: self
+      integer, intent(in) :: remaining
+      real(wp) :: now, before
+
+      most = remaining
+      associate (wear => self%contact%model%scene%wear, present => self%cycles(self%cycle_count))
+         if (wear%block > 0) return
+         if (present%number == 1) then
+            most = 1
+            return
+         end if
+         associate (last => self%cycles(self%cycle_count - 1))
+            now = present%dissipation()
+            before = last%dissipation()
+            if (abs(now - before) > wear%tolerance*now) most = min(2*last%block, remaining)
+         end associate
+      end associate
+   end function most_worn_at_once
 
    !> Begin the next cycle at the present state, after wear.
    subroutine restart_cycle(self)
@@ -587,6 +610,7 @@ contains
                                                      targets%control)
       call begin_segment(self, targets, step, before, segments)
       call apply_segment(self, observer, error)
+      if (.not. allocated(error)) call reach_exactly(self%contact, targets)
       if (allocated(self%contact%derivatives)) then
          if (allocated(error)) then
             call self%contact%derivatives%fail('the last step ended early')
@@ -602,14 +626,30 @@ contains
          call self%contact%record(merge(event_stopped, event_step_end, allocated(error)), 0, 0, self%leg%segment%step)
    end subroutine apply_leg
 
-   !> Apply the loads of the current segment by the algorithm of the scene.
+   !> Give the loads of a path the values of its `targets`, which they have reached but for the round-off of their rates: another
+   !> segment to the same targets is then without change.
+   pure subroutine reach_exactly(path, targets)
+      class(contact_path_type), intent(inout) :: path
+      type(load_type), intent(in) :: targets(motion_count)
+
+      associate (fields => path%state%fields, moves => path%model%moves)
+         where (moves .and. targets%control == control_force) fields%force = targets%value
+         where (moves .and. targets%control == control_displacement) fields%motion = targets%value
+      end associate
+   end subroutine reach_exactly
+
+   !> Apply the loads of the current segment by the algorithm of the scene. Nothing changes while they are held: the rates of events
+   !> would be round-off.
    subroutine apply_segment(self, observer, error)
       class(simulation_type), intent(inout) :: self
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
 
       associate (method => self%contact%model%scene%method)
-         if (method%algorithm == algorithm_conventional) then
+         if (is_held(self)) then
+            call self%contact%start_segment(self%leg%segment, error)
+            if (.not. allocated(error)) call self%contact%notify(self%leg%segment, 1.0_wp, observer, error)
+         else if (method%algorithm == algorithm_conventional) then
             call apply_conventionally(self%contact, self%leg%segment, observer, error)
          else if (method%stepping == stepping_leap .and. .not. strains(self%leg%segment)) then
             call apply_by_large_increments(self%contact, self%leg%segment, observer, error)
@@ -618,6 +658,14 @@ contains
          end if
       end associate
    end subroutine apply_segment
+
+   !> Whether all loads of a contact are held in the current segment. (Derivatives by its targets are found from increments.)
+   pure logical function is_held(self)
+      class(simulation_type), intent(in) :: self
+
+      is_held = any(in_contact(self%contact%state%status)) .and. .not. allocated(self%contact%derivatives) .and. &
+                .not. any(abs(self%leg%segment%load%rate) > 0.0_wp)
+   end function is_held
 
    !> Whether a bulk stress or the wear changes in a segment. They move the stick zone while the shear narrows it, so that an edge
    !> may turn within the segment, which large increments do not resolve.
