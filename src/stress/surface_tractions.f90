@@ -408,14 +408,16 @@ contains
 
    contains
 
-      !> Widths of the intervals; of unequal ones at least some times that at the edge.
+      !> Widths of the intervals; of unequal ones at least some times that at the edge, but no more than a fraction of the zone, where
+      !> the mesh is not fine at the edge.
       function width_from(edge) result(width)
          real(wp), intent(in) :: edge
          real(wp) :: width(size(values))
-         real(wp), parameter :: times = 16.0_wp
+         real(wp), parameter :: times = 16.0_wp, most = 0.05_wp
 
          width = patch%width
-         if (patch%graded) width = max(width, times*width(minloc(abs(patch%arc - edge), dim=1)))
+         if (patch%graded) width = max(width, min(times*width(minloc(abs(patch%arc - edge), dim=1)), &
+                                                  most*(zone%edge(2) - zone%edge(1))))
       end function width_from
    end subroutine fit_zone
 

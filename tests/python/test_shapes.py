@@ -253,3 +253,29 @@ def test_results_name_the_shapes() -> None:
         result = Scene(lower, upper, steps=[Step(normal_force=1.0e-5)]).run(check=True)
         assert result.attributes["upper_body"] == f"rigid {name}"
         assert result.attributes["lower_body"] == lower.shape
+
+
+def test_tension_at_an_edge_that_the_refined_mesh_misses() -> None:
+    """The wedge unloads, and its contact ends where intervals are wide: the tension is that of a fine equal mesh."""
+    steps = [
+        mfv.Step(normal_force=0.01316),
+        mfv.Step(tangential_force=-8.469e-4, upper_bulk_stress=0.0609),
+        mfv.Step(normal_force=0.00433, upper_bulk_stress=0.1156),
+    ]
+    tension = {}
+    for mesh in (
+        mfv.Mesh(nodes=601, half_width=0.0625),
+        *(mfv.Mesh(nodes=n, half_width=0.0625, refine="edges") for n in (130, 150, 170)),
+    ):
+        result = mfv.Scene(
+            mfv.Body.wedge(0.77022, rigid=True),
+            mfv.Body.half_plane(shear_modulus=7.10786, poisson_ratio=0.3),
+            plane="stress",
+            coupling="none",
+            friction=mfv.Friction.coulomb(0.6),
+            mesh=mesh,
+            steps=steps,
+        ).run(check=True)
+        tension[mesh.nodes] = result.observables.upper_tension
+    for nodes in (130, 150, 170):
+        assert tension[nodes] == pytest.approx(tension[601], rel=0.02), nodes
