@@ -113,7 +113,7 @@ contains
       self%increments = self%increments + 1
       if (is_large) self%large_increments = self%large_increments + 1
       call check_equilibrium(self, model, after%fields)
-      call check_normal_contact(self, model, after)
+      call check_normal_contact(self, model, before%fields, after)
       if (self%applies(slip_traction)) call check_friction(self, model, before, after, is_large)
       call check_energy(self, model, before%fields, after, is_large)
       if (self%large_increments > 0) call self%find_applicable(model)
@@ -205,10 +205,12 @@ contains
       if (.not. abs(number) <= so_far) largest_or_nan = abs(number)
    end function largest_or_nan
 
-   !> Equalities and inequalities of gap and pressure.
-   subroutine check_normal_contact(self, model, state)
+   !> Equalities and inequalities of gap and pressure. Before any contact gaps are compared with those of the undeformed bodies and
+   !> with the approach, also with that `before`, which flat faces at zero have come from.
+   subroutine check_normal_contact(self, model, before, state)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
+      type(contact_fields_type), intent(in) :: before
       type(contact_state_type), intent(in) :: state
       real(wp) :: gap, closed_gap, open_gap, open_traction_size, negative_pressure, scale
       integer :: i
@@ -228,7 +230,8 @@ contains
          end if
       end do
       scale = self%normal
-      if (.not. scale > 0.0_wp) scale = max(maxval(abs(model%initial_gap)), abs(state%fields%motion(motion_approach)))
+      if (.not. scale > 0.0_wp) scale = max(maxval(abs(model%initial_gap)), abs(before%motion(motion_approach)), &
+                                            abs(state%fields%motion(motion_approach)))
       call note(self, contact_gap, closed_gap, scale)
       call note(self, gap_sign, open_gap, scale)
       call note(self, open_traction, open_traction_size, self%traction_scale)

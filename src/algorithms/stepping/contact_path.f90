@@ -101,6 +101,7 @@ module mfv_contact_path
       procedure :: begin_stress_drop
       procedure :: set_rows
       procedure :: set_status
+      procedure :: separate
       procedure :: holding
       procedure :: take_increment
       procedure :: record_changes
@@ -658,6 +659,15 @@ contains
       end if
       call self%state%set_status(mask, status)
    end subroutine set_status
+
+   !> Open all nodes, whose tractions are round-off: from here contact begins anew.
+   subroutine separate(self)
+      class(contact_path_type), intent(inout) :: self
+
+      call self%set_status(in_contact(self%state%status), spread(node_open, 1, size(self%state%status)))
+      self%state%fields%pressure = 0.0_wp
+      self%state%fields%shear = 0.0_wp
+   end subroutine separate
 
    !> Set the memory of the nodes of `mask` as if they had slipped until now.
    subroutine remember_status(self, mask)
