@@ -55,6 +55,19 @@ def test_a_list_a_table_and_a_file_are_the_same(tmp_path: Path) -> None:
     assert mfv.Scene.from_text(scene.text()) == scene
 
 
+def test_the_stiffness_after_a_reversal_does_not_depend_on_the_rows() -> None:
+    """A cycle of two rows, of four, and of 24 of a cosine: tangential_stiffness is that right after the last reversal."""
+    force = 2.0e-4
+    cosine = np.cos(2.0 * np.pi * np.arange(1, 25) / 24)
+    found = [
+        run(mfv.History(tangential_force=force * np.array(rows), cycles=2), PRESS, mfv.Step(tangential_force=force)).cycles
+        for rows in ([-1.0, 1.0], [0.0, -1.0, -1.0, 0.0, 1.0], cosine)
+    ]
+    for cycles in found:
+        assert cycles.tangential_stiffness[-1] == pytest.approx(found[0].tangential_stiffness[-1], rel=1e-9)
+        assert cycles.dissipation[-1] == pytest.approx(found[0].dissipation[-1], rel=1e-9)
+
+
 def test_a_ratio_follows_the_normal_force() -> None:
     ratio = run(mfv.History(normal_force=NORMAL, force_ratio=TANGENTIAL / (0.7 * NORMAL)))
     assert np.allclose(

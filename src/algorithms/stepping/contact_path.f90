@@ -39,6 +39,16 @@ module mfv_contact_path
       real(wp) :: from = 0.0_wp, to = 1.0_wp
    end type segment_type
 
+   !> The first increment after a turning point of the tangential load, whatever the segments that follow it one way.
+   type :: leaving_type
+      !> Tangential stiffness, force/length^2. NaN: not yet known (`pending`), or not defined (nominal load steps, large increments).
+      real(wp) :: stiffness = 0.0_wp
+      !> Tangential force and shift at the turning point; the control of the load, negative where it decreases, 0: it is held.
+      real(wp) :: force = 0.0_wp, shift = 0.0_wp
+      integer :: direction = 0
+      logical :: pending = .false.
+   end type leaving_type
+
    !> Restart state of a contact, except for the linear solver and the history records.
    type :: path_position_type
       type(contact_state_type) :: state
@@ -47,9 +57,7 @@ module mfv_contact_path
       integer :: events = 0
       !> Trial length of the next increment where friction is not linear, as a fraction of a segment; 0: not yet known.
       real(wp) :: trial = 0.0_wp
-      !> Tangential stiffness of the first increment of this segment, force/length^2. NaN: not yet known, or not defined (nominal
-      !> load steps and large increments).
-      real(wp) :: first_stiffness = 0.0_wp
+      type(leaving_type) :: leaving
       !> Rolling of the bodies on each other.
       type(rolling_type) :: rolling
       !> Nodes of the widest slip zone that has dissipated in this segment, see mfv_slip_zones.
@@ -72,11 +80,8 @@ module mfv_contact_path
       type(recent_intervals_type) :: recent
       !> Whether every event is recorded, or only what the caller records.
       logical :: record_events = .true.
-      !> Tangential force and shift at the start of the segment, until the first increment is known.
-      real(wp), private :: start_force = 0.0_wp, start_shift = 0.0_wp
       !> Dissipation at the start of the segment, force.
       real(wp), private :: start_dissipation = 0.0_wp
-      logical, private :: first_stiffness_pending = .false.
    contains
       procedure :: copy_without_history
       procedure :: differentiate
@@ -84,7 +89,7 @@ module mfv_contact_path
       procedure :: restore
       procedure :: resume
       procedure :: notify
-      procedure :: reset_first_stiffness
+      procedure :: note_start
       procedure :: begin_motion
       procedure :: begin_wear
       procedure :: end_wear
@@ -252,31 +257,39 @@ contains
       if (stop_wanted) call self%end_here(MFV_INTERRUPTED, 'stopped on request', error)
    end subroutine notify
 
-   !> Start to determine first_stiffness and slip_zone_nodes of a new segment.
-   subroutine reset_first_stiffness(self)
+   !> Note the start of a segment with its loads: for slip_zone_nodes, and for the stiffness on leaving a turning point.
+   subroutine note_start(self, load)
       class(contact_path_type), intent(inout) :: self
+      type(load_type), intent(in) :: load(motion_count)
+      integer :: direction
 
-      self%first_stiffness = ieee_value(1.0_wp, ieee_quiet_nan)
-      self%start_force = self%state%fields%force(motion_shift)
-      self%start_shift = self%state%fields%motion(motion_shift)
       self%start_dissipation = self%state%dissipation
       self%slip_zone_nodes = 0
-      self%first_stiffness_pending = self%model%scene%method%algorithm == algorithm_mfv .and. &
-                                     self%model%scene%method%stepping /= stepping_leap
-   end subroutine reset_first_stiffness
+      if (.not. any(abs(load%rate) > 0.0_wp)) return
+      associate (shift => load(motion_shift), fields => self%state%fields, method => self%model%scene%method)
+         direction = 0
+         if (abs(shift%rate) > 0.0_wp) direction = nint(sign(real(shift%control, wp), shift%rate))
+         if (direction /= 0 .and. direction == self%leaving%direction) return
+         self%leaving = leaving_type(ieee_value(1.0_wp, ieee_quiet_nan), fields%force(motion_shift), fields%motion(motion_shift), &
+                                     direction, method%algorithm == algorithm_mfv .and. method%stepping /= stepping_leap)
+      end associate
+   end subroutine note_start
 
-   !> Set first_stiffness once the tangential force has changed by more than round-off. It is undefined for a held shift.
-   subroutine find_first_stiffness(self)
+   !> Set the stiffness on leaving a turning point once the tangential force has changed by more than round-off. It is undefined for
+   !> a held shift.
+   subroutine find_stiffness_on_leaving(self)
       class(contact_path_type), intent(inout) :: self
       real(wp), parameter :: visible = 1.0e-6_wp
       real(wp) :: force, shift
 
-      force = self%state%fields%force(motion_shift) - self%start_force
-      shift = self%state%fields%motion(motion_shift) - self%start_shift
-      if (.not. abs(force) > visible*self%model%friction_scale*self%state%fields%force(motion_approach)) return
-      self%first_stiffness_pending = .false.
-      if (abs(force) < self%model%largest_stiffness()*abs(shift)) self%first_stiffness = force/shift
-   end subroutine find_first_stiffness
+      associate (fields => self%state%fields, leaving => self%leaving)
+         force = fields%force(motion_shift) - leaving%force
+         shift = fields%motion(motion_shift) - leaving%shift
+         if (.not. abs(force) > visible*self%model%friction_scale*fields%force(motion_approach)) return
+         leaving%pending = .false.
+         if (abs(force) < self%model%largest_stiffness()*abs(shift)) leaving%stiffness = force/shift
+      end associate
+   end subroutine find_stiffness_on_leaving
 
    !> Switch friction on or off at the nodes in contact. The first friction starts the tangential problem. Error
    !> MFV_INADMISSIBLE_STEP: friction is switched off under shear traction.
@@ -660,10 +673,11 @@ contains
       call self%state%set_status(mask, status)
    end subroutine set_status
 
-   !> Open all nodes, whose tractions are round-off: from here contact begins anew.
+   !> Open all nodes, whose tractions are round-off: from here contact begins anew. (Derivatives are followed through these nodes.)
    subroutine separate(self)
       class(contact_path_type), intent(inout) :: self
 
+      if (allocated(self%derivatives)) return
       call self%set_status(in_contact(self%state%status), spread(node_open, 1, size(self%state%status)))
       self%state%fields%pressure = 0.0_wp
       self%state%fields%shear = 0.0_wp
@@ -739,7 +753,7 @@ contains
          if (abs(slip_rate(i)) > moving*fastest) self%state%slip_direction(i) = merge(1, -1, slip_rate(i) > 0.0_wp)
       end do
       call self%certificate%check_increment(self%model, self%before, self%state, present(friction_work))
-      if (self%first_stiffness_pending) call find_first_stiffness(self)
+      if (self%leaving%pending) call find_stiffness_on_leaving(self)
       call note_slip_zones(self)
       if (.not. self%model%moves(motion_rotation) .or. dropped > 0.0_wp) return
       associate (before => self%before%fields)

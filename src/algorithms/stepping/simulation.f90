@@ -522,7 +522,7 @@ contains
       logical :: is_farthest
 
       point = new_turning_point(self%contact%model, self%contact%state, self%slip, self%contact%work, &
-                                self%contact%first_stiffness)
+                                self%contact%leaving%stiffness)
       call cycle%add_point(point, is_first=mod(leg, turns) == 1)
       if (mod(leg, turns) /= 0) then
          is_farthest = mod(leg, turns) == 1
@@ -698,7 +698,7 @@ contains
       associate (state => self%contact%state)
          self%leg%start = segment_start_type(state%dissipation, state%fields%force, state%fields%shear)
       end associate
-      call self%contact%reset_first_stiffness()
+      call self%contact%note_start(self%leg%segment%load)
    end subroutine begin_segment
 
    !> The load from `start` to `goal`, with its rate per segment. A change of force within round-off of the largest force so far,
