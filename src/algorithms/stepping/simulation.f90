@@ -626,16 +626,13 @@ contains
          call self%contact%record(merge(event_stopped, event_step_end, allocated(error)), 0, 0, self%leg%segment%step)
    end subroutine apply_leg
 
-   !> Give the loads of a path the values of its `targets`, which they have reached but for the round-off of their rates: another
-   !> segment to the same targets is then without change. Without normal force nothing remains in contact.
+   !> Give the prescribed motions of a path the values of its `targets`, which they have reached but for round-off: another segment to
+   !> the same targets is then without change. Without normal force nothing remains in contact.
    subroutine reach_exactly(path, targets)
       class(contact_path_type), intent(inout) :: path
       type(load_type), intent(in) :: targets(motion_count)
 
-      associate (fields => path%state%fields, moves => path%model%moves)
-         where (moves .and. targets%control == control_force) fields%force = targets%value
-         where (moves .and. targets%control == control_displacement) fields%motion = targets%value
-      end associate
+      where (path%model%moves .and. targets%control == control_displacement) path%state%fields%motion = targets%value
       associate (normal => targets(motion_approach))
          if (normal%control == control_force .and. .not. normal%value > 0.0_wp) call path%separate()
       end associate
