@@ -408,8 +408,8 @@ contains
 
    contains
 
-      !> Widths of the intervals; of unequal ones at least some times that at the edge, but no more than a fraction of the zone, where
-      !> the mesh is not fine at the edge.
+      !> Widths of the intervals; of unequal ones at least some times that at the edge, but no more than a fraction of the zone,
+      !> where the mesh is not fine at the edge.
       function width_from(edge) result(width)
          real(wp), intent(in) :: edge
          real(wp) :: width(size(values))

@@ -361,8 +361,8 @@ contains
       inside%bulk = bulk
    end subroutine interior
 
-   !> Whether a contact zone ends on the left (`side` -1) or right (1) where a body does, at an `edge` that is the end of an interval:
-   !> the pressure does not vanish there. `arc`, `width`: see interior.
+   !> Whether a contact zone ends on the left (`side` -1) or right (1) where a body does, at an `edge` that is the end of an
+   !> interval: the pressure does not vanish there. `arc`, `width`: see interior.
    pure logical function ends_with_body(self, arc, width, edge, side)
       class(scene_type), intent(in) :: self
       real(wp), intent(in) :: arc(:), width(:), edge

@@ -41,7 +41,8 @@ module mfv_contact_path
 
    !> The first increment after a turning point of the tangential load, whatever the segments that follow it one way.
    type :: leaving_type
-      !> Tangential stiffness, force/length^2. NaN: not yet known (`pending`), or not defined (nominal load steps, large increments).
+      !> Tangential stiffness, force/length^2. NaN: not yet known (`pending`), or not defined (nominal load steps, large
+      !> increments).
       real(wp) :: stiffness = 0.0_wp
       !> Tangential force and shift at the turning point; the control of the load, negative where it decreases, 0: it is held.
       real(wp) :: force = 0.0_wp, shift = 0.0_wp
@@ -909,12 +910,14 @@ contains
       class(contact_path_type), intent(in) :: self
       character(*), intent(in) :: why
       type(error_type), allocatable, intent(out) :: error
-
       character(:), allocatable :: hint
 
       hint = ''
-      if (self%model%scene%friction%acts()) &
-         hint = trim(self%model%scene%friction%law%explain_failure(self%model%compliance%modulus/self%model%interval()))
+      associate (friction => self%model%scene%friction)
+         if (friction%acts()) hint = trim(friction%law%explain_failure(self%model%compliance%modulus/self%model%interval()))
+         if (hint == '' .and. .not. friction%is_linear() .and. self%model%scene%method%accuracy > 0.0_wp) &
+            hint = '; a smaller accuracy may find one'
+      end associate
       call self%end_here(MFV_NO_CONTINUATION, 'no admissible continuation: '//why//hint, error)
    end subroutine no_continuation
 

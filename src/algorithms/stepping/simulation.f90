@@ -283,8 +283,8 @@ contains
    end subroutine apply_wear
 
    !> Most cycles of a block of wear that begins with the present one, at most `remaining`. The first cycle of a step wears alone,
-   !> since it often dissipates otherwise than those that follow. While the dissipation of computed cycles still changes by more than
-   !> the tolerance, blocks become twice as long at most.
+   !> since it often dissipates otherwise than those that follow. While the dissipation of computed cycles still changes by more
+   !> than the tolerance, blocks become twice as long at most.
    pure integer function most_worn_at_once(self, remaining) result(most)
       class(simulation_type), intent(in) :: self
       integer, intent(in) :: remaining
@@ -626,8 +626,8 @@ contains
          call self%contact%record(merge(event_stopped, event_step_end, allocated(error)), 0, 0, self%leg%segment%step)
    end subroutine apply_leg
 
-   !> Give the prescribed motions of a path the values of its `targets`, which they have reached but for round-off: another segment to
-   !> the same targets is then without change. Without normal force nothing remains in contact.
+   !> Give the prescribed motions of a path the values of its `targets`, which they have reached but for round-off: another segment
+   !> to the same targets is then without change. Without normal force nothing remains in contact.
    subroutine reach_exactly(path, targets)
       class(contact_path_type), intent(inout) :: path
       type(load_type), intent(in) :: targets(motion_count)
