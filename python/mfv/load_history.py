@@ -26,6 +26,9 @@ AGREEMENT = 1.0e-9
 #: Beyond this difference the steps of the case did not produce the result.
 LIKENESS = 1.0e-2
 
+#: The note on a case with &history.
+BETWEEN_ROWS = "states between the turning points of &history are not computed; for more states add rows to it"
+
 Progress = Callable[[Iterable[Any]], Iterable[Any]]
 
 
@@ -33,11 +36,30 @@ class Part(NamedTuple):
     """A load segment: targets of the loads; segments of return go to the loads at the beginning of the step."""
 
     step: int
+    #: Its number in the step, from 1.
+    reversal: int
     targets: dict[str, float]
-    is_back: bool
     friction: bool
     #: The loads at which it ended early.
     reached: dict[str, float] | None = None
+
+    @property
+    def is_back(self) -> bool:
+        """Whether it returns to the loads at the beginning of the step."""
+        return self.reversal % 2 == 0
+
+
+class Stage(NamedTuple):
+    """The states of one cycle, or a single state outside cycles."""
+
+    #: Numbers in `result.steps`, from 1.
+    states: list[int]
+    #: Whether it is a cycle with all of its turning points.
+    is_cycle: bool = False
+    #: Whether it is the first cycle of &history, which may begin at other loads than it ends.
+    is_first: bool = False
+    #: The step, 0 for a state at which the run ended early.
+    step: int = 0
 
 
 class LoadHistory(NamedTuple):
@@ -58,13 +80,88 @@ def kept_states(result: Result) -> Result:
     return longer
 
 
+def stages(result: Result) -> list[Stage]:
+    """The states of a result in `steps` by cycles."""
+    turns, of_history = _turns(result)
+    found: list[Stage] = []
+    passed: list[set[int]] = []
+    last_turn = 0
+    for number, state in enumerate(result.steps, start=1):
+        step = int(state.get("step", 0))
+        size = turns.get(step, 0)
+        turn = (int(state.reversal) - 1) % size if size else 0
+        if not size or not found or step != found[-1].step or turn < last_turn:
+            found.append(Stage([], is_first=step == of_history > 0 and int(state.reversal) <= size, step=step))
+            passed.append(set())
+        found[-1].states.append(number)
+        passed[-1].add(turn)
+        last_turn = turn
+    return [stage._replace(is_cycle=len(seen) == turns.get(stage.step, 0)) for stage, seen in zip(found, passed)]
+
+
+def _turns(result: Result) -> tuple[dict[int, int], int]:
+    """Number of turning points of a cycle, by step with cycles, 0 if unknown; and which of these steps is of &history, 0 if none."""
+    ends: dict[int, int] = {}
+    for state in result.steps:
+        if "step" in state:
+            ends[int(state.step)] = max(int(state.reversal), ends.get(int(state.step), 0))
+    turns = {step: 2 for step, reversal in ends.items() if reversal > 1}
+    try:
+        parts = groups(result.attributes["input"])
+    except ValueError:
+        return {}, 0
+    steps = sum(name == "step" for name, _ in parts)
+    history = next((values for name, values in parts if name == "history"), None)
+    of_history = min((step for step in turns if step > steps), default=0) if history is not None else 0
+    if history is not None and of_history:
+        turns[of_history] = _period(result, history, of_history, ends)
+    return turns, of_history
+
+
+def _period(result: Result, history: dict[str, Any], step: int, ends: dict[int, int]) -> int:
+    """Number of turning points in the cycle of &history, 0 if unknown. `ends`: the last reversal of every step."""
+    lists = [len(value) for value in history.values() if isinstance(value, list)]
+    if "period" in history or lists:
+        return int(history.get("period", max(lists, default=0)))
+    cycles = result.cycles
+    if result.outcome != "complete" or "step" not in cycles or cycles.step[-1] != step:
+        return 0
+    # All rows of a file are the cycle: their number follows from that of the cycles.
+    done = int(cycles.cycle[-1]) + (int(cycles.block[-1]) - 1 if "block" in cycles else 0)
+    done -= sum(reversal // 2 for other, reversal in ends.items() if other < step)
+    return ends[step] // max(done, 1)
+
+
 def thinned(result: Result, states: int) -> Result:
-    """A result with at most `states` of its states in `steps`, evenly spaced, including the last one."""
+    """A result with at most `states` of its states in `steps`: whole cycles, including the last one, and the last state.
+
+    If there are too few states for that, states evenly spaced.
+    """
     if len(result.steps) <= states:
         return result
+    every = stages(result)
+    for count in range(min(len(every), states), 0, -1):
+        chosen = [number for stage in _some(every, count) for number in stage.states]
+        if len(chosen) <= states:
+            break
+    else:
+        chosen = [int(number) + 1 for number in evenly(len(result.steps), states)]
     thinner = copy.copy(result)
-    thinner.steps = [result.steps[number] for number in evenly(len(result.steps), states)]
+    thinner.steps = [result.steps[number - 1] for number in chosen]
     return thinner
+
+
+def _some(every: list[Stage], count: int) -> list[Stage]:
+    """About `count` stages, evenly spaced, including the last one and the last cycle."""
+    chosen = {len(every) - 1 - int(number) for number in evenly(len(every), count)}
+    chosen.update([number for number, stage in enumerate(every) if stage.is_cycle][-1:])
+    return [every[number] for number in sorted(chosen)]
+
+
+def _thinned_to_the_last_cycle(result: Result, states: int) -> Result:
+    """A result with at most `states` of its states in `steps`, or with its last cycle and last state if they are more."""
+    every = stages(result)
+    return thinned(result, max(states, sum(len(stage.states) for stage in _some(every, 1)))) if every else result
 
 
 def evenly(size: int, most: int) -> np.ndarray:
@@ -77,17 +174,27 @@ def with_states_between(result: Result, states: int, progress: Progress = iter) 
 
     If that fails, or ends in another state, the states saved in the result, with a note that says why. There is also a note if
     the last states differ by more than AGREEMENT times the largest traction of all states. `progress` wraps the targets.
+    A case with &history has the states at its turning points, and a note that there are none in between. If there are more states
+    than `states`, whole cycles are left out, but never the last one.
     """
     kept = kept_states(result)
     try:
         again = _solved_again(result, states, progress)
     except (MfvError, ValueError) as error:
-        return LoadHistory(thinned(kept, states), f"only the states saved in the file are shown: {error}")
+        return LoadHistory(_thinned_to_the_last_cycle(kept, states), f"only the states saved in the file are shown: {error}")
     difference = _difference_of_ends(result, again, [*kept.steps, *again.steps])
     elsewhere = f"the case solved again ends in a different state: tractions differ by {difference:.1e} of the largest"
     if not difference <= LIKENESS:
-        return LoadHistory(thinned(kept, states), f"only the states saved in the file are shown: {elsewhere}")
-    return LoadHistory(again, "" if difference <= AGREEMENT else elsewhere)
+        return LoadHistory(_thinned_to_the_last_cycle(kept, states), f"only the states saved in the file are shown: {elsewhere}")
+    notes = [] if difference <= AGREEMENT else [elsewhere]
+    if _has_history(result):
+        notes.append(BETWEEN_ROWS)
+    return LoadHistory(again, "; ".join(notes))
+
+
+def _has_history(result: Result) -> bool:
+    """Whether the case of a result has &history."""
+    return any(name == "history" for name, _ in groups(result.attributes["input"]))
 
 
 def _difference_of_ends(result: Result, again: Result, states: Sequence[Group]) -> float:
@@ -102,7 +209,7 @@ def _solved_again(result: Result, states: int, progress: Progress) -> Result:
     """The result of a case solved again with intermediate states. Raises MfvError, ValueError."""
     if result.attributes["algorithm"] != "mfv":
         raise ValueError("the conventional algorithm depends on the load steps, which additional states would change")
-    if any(name == "history" for name, _ in groups(result.attributes["input"])):
+    if _has_history(result):
         return _with_turning_points(result, states)
     parts = list(_parts(result))
     if result.outcome != "complete" and parts:
@@ -113,6 +220,7 @@ def _solved_again(result: Result, states: int, progress: Progress) -> Result:
         raise ValueError(f"{len(parts)} load segments need at least {2 * len(parts)} states")
     divided = [(part, division / divisions) for part in parts for division in range(1, divisions + 1)]
     began: dict[int, dict[str, float]] = {}
+    advanced: list[Part] = []
     with case_of(result, keeping_states=True) as case:
         start: dict[str, float] = {}
         for part, share in progress(divided):
@@ -123,14 +231,26 @@ def _solved_again(result: Result, states: int, progress: Progress) -> Result:
             loads: dict[str, Any] = _loads_at(share, part, start, ends)
             if case.advance(friction=part.friction, **loads) != "complete":
                 break
-        return kept_states(case.result())
+            advanced.append(part)
+        again = case.result()
+        again.steps = [_of_part(state, part) for state, part in zip(again.steps, advanced)]
+        return kept_states(again)
+
+
+def _of_part(state: Group, part: Part) -> Group:
+    """A state with the step and the reversal of its load segment in the original case."""
+    fields = {name: state._field(name) for name in state}
+    for name, number in (("step", part.step), ("reversal", part.reversal)):
+        fields[name] = fields[name]._replace(values=np.int32(number))
+    return Group(fields, state._coordinates)
 
 
 def _with_turning_points(result: Result, states: int) -> Result:
-    """The result of a case with a load history solved again, with at most `states` of the states at its turning points."""
+    """The result of a case with a load history solved again, with the states at its turning points, of at most `states` if the last
+    cycle has no more."""
     with case_of(result, keeping_states=True) as case:
         case.run()
-        return thinned(kept_states(case.result()), states)
+        return _thinned_to_the_last_cycle(kept_states(case.result()), states)
 
 
 def _loads_at(share: float, part: Part, start: dict[str, float], ends: dict[str, float]) -> dict[str, float]:
@@ -156,7 +276,7 @@ def _parts(result: Result) -> Iterator[Part]:
         if "force_ratio" in step:
             targets["tangential_force"] = step["force_ratio"] * float(np.max(result.mesh.static_friction)) * normal_force
         for reversal in range(1, _reversals(result, number, step, number <= done) + 1):
-            yield Part(number, targets, reversal % 2 == 0, bool(step.get("friction", True)))
+            yield Part(number, reversal, targets, bool(step.get("friction", True)))
 
 
 def _reversals(result: Result, number: int, step: dict[str, Any], is_done: bool) -> int:

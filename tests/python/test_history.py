@@ -219,7 +219,22 @@ def test_states_between_the_turning_points_of_a_result() -> None:
     from mfv.load_history import with_states_between
 
     result = run(mfv.History(normal_force=NORMAL, tangential_force=TANGENTIAL, cycles=3))
-    shown = with_states_between(result, 6)
-    assert shown.note == ""
-    assert len(shown.result.steps) == 6
-    assert np.array_equal(shown.result.steps[-1].shear, result.state.shear)
+    for states, saved in ((2, 4), (6, 5), (12, 9), (60, 13)):  # whole cycles of four states, and the pressing
+        shown = with_states_between(result, states)
+        assert "for more states add rows" in shown.note
+        assert len(shown.result.steps) == saved
+        assert [float(state.normal_force) for state in shown.result.steps[-4:]] == pytest.approx(NORMAL)
+        assert np.array_equal(shown.result.steps[-1].shear, result.state.shear)
+
+
+def test_thinned_states_are_whole_cycles() -> None:
+    from mfv.load_history import thinned, with_states_between
+
+    turning = run(mfv.History(tangential_force=[-2.0e-4, 2.0e-4], cycles=30), output=mfv.Output(states="reversals"))
+    steps = [PRESS, mfv.Step(tangential_force=2.0e-4), mfv.Step(tangential_force=-2.0e-4, cycles=10)]
+    reversed_ = cylinder(*steps, mesh=MESH).run(check=True)
+    for result, states in ((turning, 31), (reversed_, 12)):
+        forces = [float(state.tangential_force) for state in with_states_between(result, states).result.steps]
+        assert len(forces) <= states and forces[-2:] == pytest.approx([-2.0e-4, 2.0e-4])
+        assert forces.count(pytest.approx(-2.0e-4)) >= 4
+    assert len(thinned(turning, 1).steps) == 1

@@ -45,10 +45,8 @@ def run(options: argparse.Namespace) -> None:
 
     result = read(options.file)
     output = target(options.output, options.file.with_suffix(".gif"), SUFFIXES, [options.file])
-    if options.kept:
-        shown = thinned(kept_states(result), options.frames)
-    else:
-        shown = solved_between(options, result, options.frames).result
+    states = kept_states(result) if options.kept else solved_between(options, result, options.frames).result
+    shown = thinned(states, options.frames)
     with written(output) as part, tqdm(total=len(shown.steps), desc="drawing", unit="picture", disable=None) as bar:
         save(movie(shown), part, options.rate, lambda frame, number: bar.update())
     print(output)
