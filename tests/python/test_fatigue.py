@@ -281,6 +281,89 @@ def test_states_of_the_last_cycle(pad: mfv.Result) -> None:
         fatigue.last_cycle(once.run())
 
 
+PRESS = mfv.Step(normal_force=500, friction=False)
+HALF = 162.5  # half of mu P
+
+
+def equal_pad(*steps: mfv.Step, **keys: object) -> mfv.Result:
+    """A cylinder on a half-plane of the same material, pressed and then loaded."""
+    material = {"youngs_modulus": 74100, "poisson_ratio": 0.33}
+    bodies = mfv.Body.half_plane(**material), mfv.Body.disk(127, **material)
+    return mfv.Scene(*bodies, friction=mfv.Friction.coulomb(0.65), mesh=mfv.Mesh(nodes=61), steps=[PRESS, *steps], **keys).run()
+
+
+def swt_of_last_cycle(result: mfv.Result) -> float:
+    return fatigue.smith_watson_topper(fatigue.stress_cycle(result, -1.3949, 0.0)).maximum.value
+
+
+def cyclic(**keys: float) -> list[mfv.Step]:
+    """A load to its target, and three cycles to its opposite and back."""
+    return [mfv.Step(**keys), mfv.Step(**{name: -value for name, value in keys.items()}, cycles=3)]
+
+
+@pytest.mark.parametrize("states", ["last_cycle", "reversals"])
+def test_last_cycle_of_a_history_is_whole(states: str, tmp_path: Path) -> None:
+    """A load may pass a value twice in a cycle, and the tangential force is constant in gross slip."""
+    half = swt_of_last_cycle(equal_pad(*cyclic(tangential_force=HALF)))
+    gross = swt_of_last_cycle(equal_pad(*cyclic(shift=0.06)))
+    angle = 2.0 * np.pi * np.arange(1, 25) / 24
+    (tmp_path / "loads.csv").write_text(f"tangential_force\n{HALF}\n0\n{-HALF}\n0\n")
+    cases = [
+        (mfv.History(shift=0.06 * np.cos(angle), cycles=3), 24, gross),
+        (mfv.History(shift=0.06 * np.sin(angle), cycles=3), 24, gross),
+        (mfv.History(tangential_force=HALF * np.sin(angle), cycles=3), 24, half),
+        (mfv.History(tangential_force=[HALF, 0.0, -HALF, 0.0], cycles=3), 4, half),
+        (mfv.History(tangential_force=[50.0, HALF, 0.0, -HALF, 0.0], period=4, cycles=3), 4, half),
+        (mfv.History(file=tmp_path / "loads.csv", cycles=3), 4, half),
+    ]
+    for history, period, expected in cases:
+        result = equal_pad(history=history, output=mfv.Output(states=states))
+        end = len(result.steps)
+        assert fatigue.last_cycle(result) == tuple(range(end - period + 1, end + 1))
+        assert swt_of_last_cycle(result) == pytest.approx(expected, rel=1e-6)
+
+
+def test_last_cycle_with_states_between_is_whole() -> None:
+    gross = equal_pad(*cyclic(shift=0.06))
+    finer, note = mfv.load_history.with_states_between(gross, 64)
+    assert note == "" and fatigue.last_cycle(finer) == tuple(range(49, 65))
+    assert swt_of_last_cycle(finer) == pytest.approx(swt_of_last_cycle(gross), rel=1e-6)
+    half = swt_of_last_cycle(equal_pad(*cyclic(tangential_force=HALF)))
+    forces = (HALF, -HALF, HALF, -HALF, 0.0)
+    unloaded = equal_pad(*(mfv.Step(tangential_force=force) for force in forces))
+    with pytest.raises(ValueError, match="do not contain a closed cycle"):
+        fatigue.last_cycle(unloaded)
+    finer, note = mfv.load_history.with_states_between(unloaded, 24)
+    assert note == "" and fatigue.last_cycle(finer) == tuple(range(15, 25))
+    assert swt_of_last_cycle(finer) == pytest.approx(half, rel=1e-6)
+    for result in (gross, equal_pad(history=mfv.History(tangential_force=[-HALF, HALF], cycles=30))):
+        finer, _ = mfv.load_history.with_states_between(result, 3)  # too few
+        assert len(fatigue.last_cycle(finer)) == 2
+
+
+def test_last_cycle_of_plain_steps_and_of_a_host() -> None:
+    """A cycle that passes through its first loads twice is not taken for half of itself."""
+    forces = (HALF, 0.0, -HALF, 0.0)
+    twice = [mfv.Step(tangential_force=force) for force in (*forces, *forces)]
+    half = swt_of_last_cycle(equal_pad(*cyclic(tangential_force=HALF)))
+    result = equal_pad(*twice)
+    assert fatigue.last_cycle(result) == (6, 7, 8, 9) and swt_of_last_cycle(result) == pytest.approx(half, rel=1e-6)
+    with mfv.Case.from_text(result.attributes["input"].split("&step")[0] + "&step normal_force=500, friction=.false. /\n") as case:
+        case.run()
+        for force in (*forces, *forces):
+            case.advance(tangential_force=force)
+        assert fatigue.last_cycle(case.result()) == (6, 7, 8, 9)
+
+
+def test_last_cycle_with_wear() -> None:
+    """Forces of a cycle between two shifts change with wear, but its states are known; so is a last cycle that was not saved."""
+    worn = equal_pad(*cyclic(shift=0.01), wear=mfv.Wear(coefficient=1e-7))
+    assert fatigue.last_cycle(worn) == (len(worn.steps) - 1, len(worn.steps))
+    ends = equal_pad(*cyclic(shift=0.01), output=mfv.Output(states="steps"))
+    with pytest.raises(ValueError, match="save its turning points by states='last_cycle'"):
+        fatigue.last_cycle(ends)
+
+
 def test_surface_stresses_of_a_cycle(pad: mfv.Result) -> None:
     """The largest tension of the cycle is that of the library; plane strain; the mirrored half of the cycle has the mirrored stresses."""
     tension = mfv.stress.stress(pad, 0.0, 0.0).tension

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..load_history import kept_states
-from ..loads import MOTIONS
-from ..result import Group, Result
+from ..inputs import groups
+from ..load_history import LOADS, kept_states, stages
+from ..result import Result
 from ..stress import BODIES, stress, surface
 
 Array = NDArray[np.float64]
@@ -18,8 +18,11 @@ Array = NDArray[np.float64]
 #: The stresses of a cycle, in this order along the last dimension.
 COMPONENTS = ("sigma_xx", "sigma_yy", "sigma_xy", "sigma_zz")
 
-#: Loads that differ by less, relative to the largest of the history, are equal.
-EQUAL_LOADS = 1.0e-9
+#: States are equal if their loads and tractions differ by less, relative to the ranges over the load history.
+EQUAL_STATES = 1.0e-3
+
+#: A load whose range is smaller, relative to its largest value, is constant.
+CONSTANT = 1.0e-6
 
 
 @dataclass(frozen=True)
@@ -73,7 +76,7 @@ def stress_cycle(
 
     `body`: 'lower' or 'upper'. `states`: the numbers in `result.steps`, from 1, of the states of the cycle; those of `last_cycle` by
     default. The states of a result are its turning points; `mfv.load_history.with_states_between` computes more, which a cycle out of
-    phase needs. Raises ValueError without a closed cycle and as `mfv.stress.stress`.
+    phase needs. Raises ValueError as `last_cycle` and as `mfv.stress.stress`.
     """
     across, up = (np.array(values, dtype=np.float64) for values in np.broadcast_arrays(x, y))
     numbers = last_cycle(result) if states is None else tuple(states)
@@ -87,23 +90,67 @@ def stress_cycle(
 
 
 def last_cycle(result: Result) -> tuple[int, ...]:
-    """Numbers in `result.steps`, from 1, of the states of the last cycle: those after the latest state with the loads of the last one.
+    """Numbers in `result.steps`, from 1, of the states of the last cycle; the last one is also the state in which it begins.
 
-    A cycle must contain another state between the two. Raises ValueError if the loads never return; then repeat the load cycle once, by
-    `cycles` or by another step, which also removes the influence of the first loading.
+    The cycle is that of the last step if it has `cycles`, or of a &history that is repeated. Otherwise it consists of the states after
+    the latest one with the prescribed loads and motions and the tractions of the last, reached in the same direction, if these include
+    the extremes of everything prescribed. Raises ValueError if there is no such cycle, or if its states are not in the result.
     """
-    states = kept_states(result).steps
-    loads = np.array([_loads(state) for state in states])
-    if len(loads) > 2:
-        scale = np.where(np.any(loads != 0.0, axis=0), np.max(np.abs(loads), axis=0), 1.0)
-        is_equal = np.all(np.abs(loads - loads[-1]) <= EQUAL_LOADS * scale, axis=1)
-        earlier = np.flatnonzero(is_equal[:-2])
-        if earlier.size:
-            return tuple(range(int(earlier[-1]) + 2, len(states) + 1))
-    raise ValueError(
-        f"the {len(states)} states in /steps do not contain a closed cycle: no earlier state has the loads of the last one; "
-        "repeat the cycle (cycles=2 in &step), or name the states of the cycle by their numbers"
-    )
+    kept = kept_states(result)
+    every = [stage for stage in stages(kept) if stage.step]
+    same = [stage for stage in every if stage.step == every[-1].step]
+    cycles = [stage for stage in same if stage.is_cycle]
+    if cycles and not cycles[-1].is_first:
+        return tuple(cycles[-1].states)
+    if not cycles and same and int(kept.steps[same[-1].states[-1] - 1].reversal) > 1:
+        raise ValueError(
+            f"the {len(kept.steps)} states in /steps do not contain a whole cycle of the last step; save its turning points by "
+            "states='last_cycle' in &output, compute them by mfv.load_history.with_states_between, or name the states by their numbers"
+        )
+    closed = _closed_loop(kept)
+    if not closed:
+        raise ValueError(
+            f"the {len(kept.steps)} states in /steps do not contain a closed cycle: no earlier state has the loads, motions and "
+            "tractions of the last one with all extremes in between; repeat the cycle (cycles=2 in &step or &history) and save its "
+            "turning points (states='last_cycle' in &output), or name the states of the cycle by their numbers"
+        )
+    return closed
+
+
+def _closed_loop(result: Result) -> tuple[int, ...]:
+    """Numbers in `result.steps`, from 1, of the states of the closed loop that ends with the last one; none if there is none."""
+    states, names = result.steps, _prescribed(result)
+    segments = [(int(state.get("step", 0)), int(state.get("reversal", 0))) for state in states]
+    ends = [number for number, segment in enumerate(segments) if segments[number + 1 : number + 2] != [segment]]
+    loads = np.array([[float(state.get(name, 0.0)) for name in names] for state in states])
+    ranges = np.ptp(loads[ends], axis=0)
+    varies = ranges > CONSTANT * np.max(np.abs(loads), axis=0)
+    tractions = np.array([np.concatenate([state.pressure, state.shear]) for state in states])
+    change = np.max(np.ptp(tractions[ends], axis=0))
+    if not np.any(varies) or change == 0.0:
+        return ()
+    loads = loads[:, varies] / ranges[varies]
+    difference = np.max(np.abs(np.column_stack([loads - loads[-1], (tractions - tractions[-1]) / change])), axis=1)
+    increments = np.diff(loads, axis=0, prepend=loads[:1])
+    is_equal = (difference <= EQUAL_STATES) & (increments @ increments[-1] >= 0.0)
+    for first in range(len(states) - 3, -1, -1):
+        loop = loads[first:]
+        is_nearest = first == 0 or difference[first - 1] >= difference[first]
+        if is_equal[first] and is_nearest and np.all(np.ptp(loop, axis=0) >= 1.0 - EQUAL_STATES):
+            return tuple(range(first + 2, len(states) + 1))
+    return ()
+
+
+def _prescribed(result: Result) -> list[str]:
+    """Names of the loads and motions that a case prescribes; all but moments, which vary by round-off, if its input does not have them."""
+    parts = groups(result.attributes["input"])
+    steps = [values for name, values in parts if name in ("step", "history")]
+    last = max(int(state.get("step", 0)) for state in result.steps)
+    is_of_host = last > len(steps) and all(name != "history" for name, _ in parts)
+    if is_of_host or any("file" in step for step in steps):
+        return [name for name in LOADS if name in result.steps[0] and name != "moment"]
+    keys = {"tangential_force" if key == "force_ratio" else key for step in steps for key in step}
+    return [name for name in LOADS if name in keys]
 
 
 def graded_points(result: Result, *, body: str = "lower", depth: float = 1.0, finest: float = 1.0e-4) -> tuple[Array, Array]:
@@ -142,9 +189,3 @@ def _edges(result: Result) -> Array:
         ends, half = loaded[[0, -1]], 0.5 * result.mesh.width
         edges = result.mesh.x[ends] + np.array([-half[ends[0]], half[ends[1]]])
     return edges
-
-
-def _loads(state: Group) -> list[float]:
-    """The forces and bulk stresses of a state."""
-    names = [motion.displacement if motion.is_stress else motion.force for motion in MOTIONS]
-    return [float(state.get(name, 0.0)) for name in names]
