@@ -429,6 +429,13 @@ def test_ruiz(pad: mfv.Result) -> None:
     assert found.slip[place] == pytest.approx(abs(pad.steps[5].slip[place] - pad.steps[4].slip[place]), rel=1e-12)
 
 
+def test_ruiz_needs_friction() -> None:
+    scene = pad_scene()
+    scene.friction, scene.steps = None, [mfv.Step(normal_force=500), mfv.Step(normal_force=400, cycles=2)]
+    with pytest.raises(ValueError, match="need friction"):
+        fatigue.ruiz(scene.run())
+
+
 def test_size_effect_needs_a_critical_distance() -> None:
     """Pads of one material and peak pressure: similar stresses, so the same life at the hot spot; below it a longer one under smaller pads."""
     script = runpy.run_path(str(EXAMPLES / "fretting_lives.py"))

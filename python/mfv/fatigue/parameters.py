@@ -144,10 +144,13 @@ class Ruiz:
 
 
 def ruiz(result: Result, *, body: str = "lower", states: Sequence[int] | None = None) -> Ruiz:
-    """Ruiz's parameters of a result over its last cycle, at the nodes; arguments and errors as of `stress_cycle`.
+    """Ruiz's parameters of a result over its last cycle, at the nodes; arguments and errors as of `stress_cycle`. Raises ValueError
+    without friction.
 
     Ruiz, Boddington, Chen (1984), Exp. Mech. 24, 208; Nowell and Hills (1990), Wear 136, 329.
     """
+    if result.attributes["friction_law"] == "none":
+        raise ValueError("Ruiz's parameters need friction: without a &friction law there is neither shear nor slip")
     numbers = last_cycle(result) if states is None else tuple(states)
     history = [kept_states(result).at(number) for number in numbers]
     x = np.asarray(result.mesh.x)
