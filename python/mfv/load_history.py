@@ -175,7 +175,7 @@ def with_states_between(result: Result, states: int, progress: Progress = iter) 
     If that fails, or ends in another state, the states saved in the result, with a note that says why. There is also a note if
     the last states differ by more than AGREEMENT times the largest traction of all states. `progress` wraps the targets.
     A case with &history has the states at its turning points, and a note that there are none in between. If there are more states
-    than `states`, whole cycles are left out, but never the last one.
+    than `states`, whole cycles are omitted, but never the last one.
     """
     kept = kept_states(result)
     try:
