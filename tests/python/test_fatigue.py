@@ -128,6 +128,63 @@ def test_smallest_sphere_of_random_paths() -> None:
         assert found[place] == pytest.approx(np.sqrt(-0.5 * best.fun), rel=1e-5)
 
 
+@pytest.mark.parametrize("states", [4, 6, 8, 13, 48])
+def test_smallest_sphere_of_ellipses(states: int) -> None:
+    """Elliptical paths about any mean: the sphere is about the centre of the ellipse if every state has its opposite, whatever the
+    axes; without, it is no larger."""
+    random = np.random.default_rng(states)
+    turn = 2.0 * np.pi * np.arange(states) / states
+    sine, cosine, mean = random.normal(size=(3, 2000, 4))
+    # Some are collinear, some do not change at all, some are circles of pure deviators.
+    cosine[:50], sine[:25] = 0.0, 0.0
+    cosine[50:100], sine[50:100] = [1.0, -1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]
+    around = sine * np.sin(turn)[:, None, None] + cosine * np.cos(turn)[:, None, None]
+    tensor = around - np.stack([around[..., [0, 1, 3]].mean(axis=-1)] * 4, axis=-1) * [1.0, 1.0, 0.0, 1.0]
+    expected = np.sqrt(np.max(0.5 * np.sum(tensor**2 * [1.0, 1.0, 2.0, 1.0], axis=-1), axis=0))
+    zero = np.zeros(2000)
+    path = around + 10.0 * mean
+    found = fatigue.crossland(fatigue.StressCycle(zero, zero, path, G, NU), k=0.0).values
+    if states % 2 == 0:
+        np.testing.assert_allclose(found, expected, rtol=1e-8, atol=1e-12)
+    else:
+        assert np.all(found <= expected * (1.0 + 1e-8) + 1e-12)
+    twice = np.repeat(path, 2, axis=0)
+    np.testing.assert_allclose(
+        fatigue.crossland(fatigue.StressCycle(zero, zero, twice, G, NU), k=0.0).values, found, rtol=1e-8, atol=1e-12
+    )
+    # In axes turned by 0.3 rad: sigma_xx and sigma_yy exchange, sigma_zz stays.
+    c, s = np.cos(0.3), np.sin(0.3)
+    turned = np.zeros((4, 4))
+    turned[:3, :3] = [[c * c, s * s, 2.0 * s * c], [s * s, c * c, -2.0 * s * c], [-s * c, s * c, c * c - s * s]]
+    turned[3, 3] = 1.0
+    for parameter in (fatigue.crossland, fatigue.dang_van):
+        first, second = (parameter(fatigue.StressCycle(zero, zero, each, G, NU), k=0.3).values for each in (path, path @ turned.T))
+        np.testing.assert_allclose(first, second, rtol=1e-6)
+
+
+def test_tension_and_torsion_with_eight_states() -> None:
+    """Amplitudes 200 and 100 out of phase: sqrt(J2) has the amplitude 200/sqrt(3), Tresca's shear 100."""
+    turn = 2.0 * np.pi * np.arange(8) / 8
+    cycle = history(xx=200.0 * np.sin(turn), xy=100.0 * np.cos(turn))
+    assert fatigue.crossland(cycle, k=0.0).maximum.value == pytest.approx(200.0 / np.sqrt(3.0), rel=1e-9)
+    assert fatigue.dang_van(cycle, k=0.0).maximum.value == pytest.approx(100.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("noise", [1e-14, 1e-11, 1e-10, 1e-9, 1e-7])
+def test_smallest_sphere_of_states_nearly_on_a_sphere(noise: float) -> None:
+    """Many states could determine the sphere and differ by round-off: the search ends, with the radius."""
+    random = np.random.default_rng(7)
+    deviator = random.normal(size=(40, 200, 3))
+    deviator /= np.linalg.norm(deviator, axis=2)[..., None]
+    # Two opposite states, so that the radius is known.
+    deviator[0], deviator[1] = [1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]
+    first, second, third = np.moveaxis(deviator + noise * random.normal(size=deviator.shape), -1, 0)
+    zz = second * np.sqrt(2.0 / 3.0)
+    stress = np.stack([first / np.sqrt(2.0) - 0.5 * zz, -first / np.sqrt(2.0) - 0.5 * zz, third / np.sqrt(2.0), zz], axis=-1)
+    found = fatigue.crossland(fatigue.StressCycle(np.zeros(200), np.zeros(200), stress, G, NU), k=0.0).values
+    np.testing.assert_allclose(found, 1.0 / np.sqrt(2.0), rtol=10.0 * noise + 1e-8)
+
+
 def test_map_ignores_points_outside_and_wrong_shapes_are_refused() -> None:
     stress = np.array([[[np.nan] * 4, [10.0, 0.0, 0.0, 0.0]], [[np.nan] * 4, [-10.0, 0.0, 0.0, 0.0]]])
     peak = fatigue.smith_watson_topper(fatigue.StressCycle(np.array([0.0, 1.0]), np.zeros(2), stress, G, NU)).maximum

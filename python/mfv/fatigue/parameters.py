@@ -25,8 +25,9 @@ PLANES = 60
 #: Searches that follow, each in one fifth of the interval of the search before: the angle is found to 2e-5 radians.
 REFINEMENTS = 5
 
-#: Points may be outside the smallest sphere by this fraction of its radius.
-SPHERE_TOLERANCE = 1.0e-10
+#: Points may be outside the smallest sphere by this fraction of its radius, and those that determine it farther from its surface by no
+#: more than the second: round-off must not exchange them for ever.
+SPHERE_TOLERANCE, ON_SPHERE = 1.0e-9, 1.0e-11
 
 
 class Peak(NamedTuple):
@@ -242,37 +243,41 @@ def _sphere_centre(path: Array) -> Array:
     """Centres, shape (*shape, 3), of the smallest spheres around the states of paths, shape (states, *shape, 3).
 
     The farthest state joins those that determine the sphere until none is outside; the sphere of at most five states is the smallest
-    of those through two to four of them (Welzl 1991, LNCS 555, 359: such a set determines it).
+    through two to four of them that encloses all (Welzl 1991, LNCS 555, 359: such a set determines it). Raises ArithmeticError if a
+    state remains outside.
     """
     points = np.moveaxis(path, 0, -2).reshape(-1, len(path), 3)
-    centre = 0.5 * (points[:, 0] + points[:, 1])
+    # Relative to a state: the sphere of a small path far from zero stress is exact too.
+    origin = points[:, 0].copy()
+    points = points - origin[:, None]
+    centre = 0.5 * points[:, 1]
     chosen = np.zeros((len(points), 4), dtype=int)
     chosen[:, 1:] = 1
     active = np.flatnonzero(np.isfinite(points).all(axis=(1, 2)))
-    if len(path) == 2:
-        active = active[:0]
     for _ in range(10 * len(path)):
-        if not active.size:
-            break
         here, rows = points[active], np.arange(active.size)
         distance = np.linalg.norm(here - centre[active, None], axis=2)
         radius = distance[rows[:, None], chosen[active]].max(axis=1)
         farthest = distance.argmax(axis=1)
         is_outside = distance[rows, farthest] > radius * (1.0 + SPHERE_TOLERANCE)
         active, here = active[is_outside], here[is_outside]
+        if not active.size:
+            return np.asarray((origin + centre).reshape(path.shape[1:]))
         five = np.column_stack([chosen[active], farthest[is_outside]])
         candidates = here[np.arange(active.size)[:, None], five]
         smallest = np.full(active.size, np.inf)
         for size in (2, 3, 4):
             for members in combinations(range(5), size):
                 trial = _circumcentre(candidates[:, members])
-                around = np.linalg.norm(candidates - trial[:, None], axis=2).max(axis=1)
-                is_smaller = around < smallest * (1.0 - SPHERE_TOLERANCE)
+                away = np.linalg.norm(candidates - trial[:, None], axis=2)
+                around = away.max(axis=1)
+                # The members themselves must be on this sphere: another set may have the same centre, but not the radius.
+                is_smaller = (around < smallest * (1.0 - ON_SPHERE)) & (around <= away[:, members].min(axis=1) * (1.0 + ON_SPHERE))
                 smallest = np.where(is_smaller, around, smallest)
                 centre[active[is_smaller]] = trial[is_smaller]
                 padded = (*members, *members[:1] * (4 - size))
                 chosen[active[is_smaller]] = five[is_smaller][:, padded]
-    return centre.reshape(path.shape[1:])
+    raise ArithmeticError(f"no smallest sphere around the path of the deviator found at {active.size} points")
 
 
 def _circumcentre(points: Array) -> Array:
