@@ -259,6 +259,16 @@ def test_damage_of_two_blocks_adds_up() -> None:
         )
 
 
+@pytest.mark.parametrize("shear", [30.0, 60.0, 100.0, 150.0])
+def test_damage_of_a_simple_cycle_is_its_life(shear: float) -> None:
+    """Shear with tension: the plane with the most damage, between those of the first search, is that of the largest parameter."""
+    cycle = history(xx=[20.0, -20.0], xy=[shear, -shear])
+    damage = fatigue.smith_watson_topper_damage(cycle, MATERIAL.smith_watson_topper)
+    peak = fatigue.smith_watson_topper(cycle).maximum
+    assert 1.0 / damage.value == pytest.approx(fatigue.life(peak.value, MATERIAL.smith_watson_topper), rel=1e-5)
+    assert damage.angle == pytest.approx(peak.angle, abs=2e-3)
+
+
 def edge_crack_by_dislocations(stress, points: int = 200) -> float:
     """K/sqrt(pi a) of an edge crack 0 < x < 1 in a half-plane from its singular integral equation, by Gauss-Chebyshev collocation.
 

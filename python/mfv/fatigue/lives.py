@@ -19,6 +19,10 @@ Curve = Callable[[Any], Any]
 #: Longest life that is computed; beyond it a life is infinite.
 LONGEST_LIFE = 1.0e12
 
+#: Planes of the first search are refined if they have more than this fraction of its largest damage; angles are found to the second
+#: number, in radians.
+PROMISING, PLANE_TOLERANCE = 0.5, 1.0e-3
+
 #: Plastic strains do not change the volume.
 PLASTIC_POISSON_RATIO = 0.5
 
@@ -142,21 +146,32 @@ class Damage(NamedTuple):
 def smith_watson_topper_damage(history: StressCycle, curve: Curve, *, planes: int = 36) -> Damage:
     """Miner's damage of a history that is not a simple cycle, at one point, on the plane where it is largest.
 
-    On every plane the normal strain is counted by `count_cycles`; each cycle has its own Smith-Watson-Topper value, with the larger of
-    the normal stresses at its ends. `history`: of one point, such as of `averaged_cycle`. `curve`: as of `life`.
+    On a plane the normal strain is counted by `count_cycles`; each cycle has its own Smith-Watson-Topper value, with the larger of
+    the normal stresses at its ends. `history`: of one point, such as of `averaged_cycle`. `curve`: as of `life`. `planes`: of the first
+    search, over half a turn; scipy's `minimize_scalar` then finds the largest damage about each that has more than its neighbours.
     """
     if history.x.size != 1:
         raise ValueError(f"the damage is that of one point, not {history.x.size}")
     xx, yy, xy, zz = history.stress.reshape(-1, 4).T
-    worst = Damage(0.0, np.nan)
-    for angle in np.pi * (0.5 - np.arange(planes) / planes):
+
+    def damage(angle: float) -> float:
         c, s = np.cos(angle), np.sin(angle)
         normal = xx * c**2 + yy * s**2 + 2.0 * xy * s * c
         strain = (normal - history.poisson_ratio * (xx + yy + zz - normal)) / history.youngs_modulus
         counted = count_cycles(strain)
         largest = np.maximum(np.maximum(normal[counted.first], normal[counted.second]), 0.0)
         value = largest * 0.5 * np.abs(strain[counted.first] - strain[counted.second])
-        damage = float(np.sum(1.0 / np.atleast_1d(life(value, curve)))) if value.size else 0.0
-        if damage > worst.value:
-            worst = Damage(damage, float(angle))
+        return float(np.sum(1.0 / np.atleast_1d(life(value, curve)))) if value.size else 0.0
+
+    angles = np.pi * (0.5 - np.arange(planes) / planes)
+    values = np.array([damage(angle) for angle in angles])
+    best = int(np.argmax(values))
+    worst = Damage(float(values[best]), float(angles[best]) if values[best] > 0.0 else np.nan)
+    minimize_scalar = needed("scipy.optimize").minimize_scalar
+    is_peak = (values >= np.roll(values, 1)) & (values >= np.roll(values, -1)) & (values > PROMISING * worst.value)
+    for angle in angles[is_peak]:
+        ends = angle - np.pi / planes, angle + np.pi / planes
+        found = minimize_scalar(lambda turn: -damage(turn), bounds=ends, method="bounded", options={"xatol": PLANE_TOLERANCE})
+        if -found.fun > worst.value:
+            worst = Damage(float(-found.fun), float(np.pi / 2.0 - np.mod(np.pi / 2.0 - found.x, np.pi)))
     return worst
