@@ -279,7 +279,8 @@ int mfv_stress(mfv_case *handle, int body, int step, size_t count, const double 
  * located from the nodal tractions, those of stick zones are not. Tractions are taken to vanish like a square root at the ends
  * of the loaded zone, except where a body of the case ends at a given contact_edge. Others, such as a uniform traction or a flat
  * punch's pressure on a case without that punch, give stresses that are wrong by 3 to 31 % near the surface. bulk_stress: a
- * uniform sigma_xx of the body [force/length^2], 0 for a disk or hole. stresses, place and tension may be NULL. Since 0.1.0. (bulk_stress: since 0.10.0.) */
+ * uniform sigma_xx of the body [force/length^2], 0 for a disk or hole. stresses, place and tension may be NULL. Since 0.1.0.
+ * (bulk_stress: since 0.10.0.) */
 int mfv_stress_under(mfv_case *handle, int body, size_t nodes, const double *arc, const double *width,
                      const double *pressure, const double *shear, const double *contact_edge, const double *stick_edge,
                      double bulk_stress, size_t count, const double *x, const double *y, double *stresses, double *place, double *tension);

@@ -361,8 +361,8 @@ contains
       inside%bulk = bulk
    end subroutine interior
 
-   !> Whether a contact zone ends on the left (`side` -1) or right (1) where a body does, at an `edge` that is the end of an
-   !> interval: the pressure does not vanish there. `arc`, `width`: see interior.
+   !> Whether a contact zone ends on the left (`side` -1) or right (1) where a body does, so that the pressure does not vanish
+   !> there: at an `edge` that is the end of the body, or of the interval of its last node. `arc`, `width`: see interior.
    pure logical function ends_with_body(self, arc, width, edge, side)
       class(scene_type), intent(in) :: self
       real(wp), intent(in) :: arc(:), width(:), edge
@@ -371,8 +371,11 @@ contains
       integer :: node
 
       node = minloc(abs(arc + side*0.5_wp*width - edge), dim=1)
-      ends_with_body = abs(arc(node) + side*0.5_wp*width(node) - edge) <= near*width(node) .and. &
-                       .not. self%touchable(arc(node) + side*width(node))
+      associate (tiny_step => side*near*width(node))
+         ends_with_body = self%touchable(edge - tiny_step) .and. .not. self%touchable(edge + tiny_step)
+         if (abs(arc(node) + side*0.5_wp*width(node) - edge) <= abs(tiny_step)) &
+            ends_with_body = .not. self%touchable(arc(node) + side*width(node))
+      end associate
    end function ends_with_body
 
    !> The finite values as pairs, shape (2, pairs); none if they are not ascending.
