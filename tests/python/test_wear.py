@@ -17,13 +17,18 @@ HALF_WIDTH = np.sqrt(4.0 * FORCE * RADIUS / (np.pi * MODULUS))
 
 def worn(cycles: int, *, steps: list[mfv.Step] | None = None, wear: dict[str, Any] | None = None, **keys: Any) -> mfv.Result:
     """A cylinder sheared between half the limit of sliding to both sides."""
-    given: dict[str, Any] = {"mesh": mfv.Mesh(nodes=101), "coupling": "none", "friction": mfv.Friction.coulomb(MU), **keys}
+    given: dict[str, Any] = {
+        "mesh": mfv.Mesh(nodes=101),
+        "coupling": "none",
+        "friction": mfv.Friction.coulomb(MU),
+        "output": mfv.Output(states="steps", history="steps"),
+        **keys,
+    }
     return mfv.Scene(
         HALF_PLANE,
         mfv.Body.disk(RADIUS, rigid=True),
         wear=mfv.Wear(**{"coefficient": COEFFICIENT, **(wear or {})}),
         steps=steps or [mfv.Step(normal_force=FORCE), mfv.Step(force_ratio=0.5), mfv.Step(force_ratio=-0.5, cycles=cycles)],
-        output=mfv.Output(states="steps", history="steps"),
         **given,
     ).run(check=True)
 
@@ -113,6 +118,15 @@ def test_a_first_cycle_unlike_the_others_wears_alone() -> None:
     assert blocks.dissipation[-1] == pytest.approx(cycles.dissipation[-1], rel=1e-4)
     depths = [result.state.wear_depth for result in results]
     np.testing.assert_allclose(depths[0], depths[1], atol=1e-3 * depths[1].max())
+
+
+def test_blocks_do_not_depend_on_what_is_kept() -> None:
+    """Without a history only the last cycle is kept."""
+    depths = []
+    for history in ("events", "steps", "none"):
+        result = worn(3000, output=mfv.Output(states="none", history=history))
+        depths.append(result.state.wear_depth)
+    assert np.array_equal(depths[0], depths[1]) and np.array_equal(depths[0], depths[2])
 
 
 def test_a_scar_grows_to_the_width_of_its_volume() -> None:

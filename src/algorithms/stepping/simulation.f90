@@ -280,6 +280,8 @@ contains
       self%cycles_done = self%cycles_done + cycles - 1
       self%leg%number = self%leg%number + turns*(cycles - 1)
       self%cycles(self%cycle_count)%block = cycles
+      self%leg%cycle%dissipation_before = self%leg%cycle%dissipation()
+      self%leg%cycle%block_before = cycles
    end subroutine apply_wear
 
    !> Most cycles of a block of wear that begins with the present one, at most `remaining`. The first cycle of a step wears alone,
@@ -288,20 +290,17 @@ contains
    pure integer function most_worn_at_once(self, remaining) result(most)
       class(simulation_type), intent(in) :: self
       integer, intent(in) :: remaining
-      real(wp) :: now, before
+      real(wp) :: dissipation
 
       most = remaining
-      associate (wear => self%contact%model%scene%wear, present => self%cycles(self%cycle_count))
+      associate (wear => self%contact%model%scene%wear, cycle => self%leg%cycle)
          if (wear%block > 0) return
-         if (present%number == 1) then
+         dissipation = cycle%dissipation()
+         if (cycle%number == 1) then
             most = 1
-            return
+         else if (abs(dissipation - cycle%dissipation_before) > wear%tolerance*dissipation) then
+            most = min(2*cycle%block_before, remaining)
          end if
-         associate (last => self%cycles(self%cycle_count - 1))
-            now = present%dissipation()
-            before = last%dissipation()
-            if (abs(now - before) > wear%tolerance*now) most = min(2*last%block, remaining)
-         end associate
       end associate
    end function most_worn_at_once
 
