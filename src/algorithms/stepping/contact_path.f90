@@ -674,11 +674,14 @@ contains
       call self%state%set_status(mask, status)
    end subroutine set_status
 
-   !> Open all nodes, whose tractions are round-off: from here contact begins anew. (Derivatives are followed through these nodes.)
+   !> Open all nodes if their pressures are round-off: from here contact begins anew. (A pin in a bore can have pressures without a
+   !> normal force. Derivatives are followed through these nodes.)
    subroutine separate(self)
       class(contact_path_type), intent(inout) :: self
+      real(wp), parameter :: round_off = 1.0e-10_wp
 
       if (allocated(self%derivatives)) return
+      if (any(abs(self%state%fields%pressure) > round_off*self%certificate%traction_scale)) return
       call self%set_status(in_contact(self%state%status), spread(node_open, 1, size(self%state%status)))
       self%state%fields%pressure = 0.0_wp
       self%state%fields%shear = 0.0_wp
