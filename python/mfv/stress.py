@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._library import real_pointer
-from .inputs import case_of
+from .inputs import case_of, keys
 from .result import Result
 
 #: The stresses at a point, in the order of the header: in Cartesian components, across the plane, principal ones in the
@@ -155,6 +155,41 @@ def surface(result: Result, body: str, x: Array) -> Array:
     sign = -1.0 if result.attributes[f"{body}_body"].endswith("disk") else 1.0
     with np.errstate(invalid="ignore"):
         return np.asarray(sign * x**2 / (radius + np.sqrt(radius**2 - x**2)))
+
+
+def slope(result: Result, body: str, x: ArrayLike) -> Array:
+    """Angle of the undeformed surface of a body at x from the x axis, counterclockwise, in radians; NaN beside a disk or hole."""
+    radius = result.scene.get(f"{body}_radius")
+    if radius is None:
+        return np.zeros_like(x, dtype=np.float64)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(_turning(result, body) * np.arcsin(np.asarray(x) / radius))
+
+
+def beneath(result: Result, body: str, x: float, distance: Array, angle: ArrayLike = 0.0) -> tuple[Array, Array]:
+    """Points x, y of a body at distances from the point of its surface at x, in directions from the inward normal there,
+    counterclockwise, in radians."""
+    turn = slope(result, body, x) + np.asarray(angle)
+    side = 1.0 if body == "lower" else -1.0
+    return x + side * distance * np.sin(turn), side * (surface(result, body, np.asarray(x)) - distance * np.cos(turn))
+
+
+def surface_nodes(result: Result, body: str) -> tuple[Array, Array, Array]:
+    """Positions x, y of the nodes on the undeformed surface of a body, and its slope there."""
+    arc, radius = _arc(result), result.scene.get(f"{body}_radius")
+    if radius is None:
+        return arc, np.zeros_like(arc), np.zeros_like(arc)
+    is_radial = keys(result.attributes["input"]).get("mesh%normals", "vertical").lower() == "radial"
+    # With radial normals arc lengths are those of the hole, the larger of the circles.
+    angle = arc / (max(result.scene.lower_radius, result.scene.upper_radius) if is_radial else radius)
+    turning = _turning(result, body)
+    return radius * np.sin(angle), 2.0 * turning * radius * np.sin(0.5 * angle) ** 2, turning * angle
+
+
+def _turning(result: Result, body: str) -> float:
+    """1 if the centre of a disk or hole is above its surface, where the slope increases with x, otherwise -1."""
+    is_disk = result.attributes[f"{body}_body"].endswith("disk")
+    return 1.0 if is_disk == (body == "upper") else -1.0
 
 
 def _arc(result: Result) -> Array:

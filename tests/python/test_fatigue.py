@@ -503,6 +503,93 @@ def test_ruiz_needs_friction() -> None:
         fatigue.ruiz(scene.run())
 
 
+def round_scene(lower: mfv.Body, upper: mfv.Body, normals: str) -> mfv.Result:
+    """A disk in a hole or two disks, pressed and sheared."""
+    angle = 60.0 if normals == "radial" else 4.0
+    scene = mfv.Scene(
+        lower,
+        upper,
+        mesh=mfv.Mesh(nodes=61, half_angle=angle, normals=normals),
+        friction=mfv.Friction.coulomb(0.3),
+        steps=[
+            mfv.Step(normal_force=1000.0 if normals == "radial" else 400.0),
+            mfv.Step(force_ratio=0.4),
+            mfv.Step(force_ratio=-0.4, cycles=2),
+        ],
+    )
+    return scene.run()
+
+
+ALUMINIUM, STEEL = {"youngs_modulus": 70000.0, "poisson_ratio": 0.33}, {"youngs_modulus": 210000.0, "poisson_ratio": 0.3}
+
+
+@pytest.fixture(
+    scope="module",
+    params=[
+        (mfv.Body.hole(10.05, **ALUMINIUM), mfv.Body.disk(10.0, **STEEL), "radial"),
+        (mfv.Body.disk(10.0, **STEEL), mfv.Body.hole(10.05, **ALUMINIUM), "radial"),
+        (mfv.Body.disk(20.0, **ALUMINIUM), mfv.Body.disk(10.0, **STEEL), "vertical"),
+    ],
+    ids=["pin above", "pin below", "disks"],
+)
+def round_bodies(request: pytest.FixtureRequest) -> tuple[mfv.Result, float]:
+    """A result, and the radius to which arc lengths refer: of the hole; 0 for that of each body."""
+    lower, upper, normals = request.param
+    return round_scene(lower, upper, normals), 10.05 if normals == "radial" else 0.0
+
+
+@pytest.mark.parametrize("body", mfv.stress.BODIES)
+def test_surface_of_disks_and_holes(round_bodies: tuple[mfv.Result, float], body: str) -> None:
+    """Along the surface is along the circle, below it is along the radius: stresses in polar components, distances from the centre."""
+    result, common = round_bodies
+    radius = float(result.scene[f"{body}_radius"])
+    is_disk = result.attributes[f"{body}_body"].endswith("disk")
+    inward = -1.0 if is_disk else 1.0
+    above = is_disk == (body == "upper")
+    centre = radius if above else -radius
+    angle = np.asarray(result.mesh.arc) / (common or radius)
+
+    def point(turn: np.ndarray, away: float | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return away * np.sin(turn), centre - np.sign(centre) * away * np.cos(turn)
+
+    numbers = fatigue.last_cycle(result)
+    near = radius * (1.0 + inward * 1e-12)
+    hoop = [mfv.stress.stress(result, *point(angle, near), body=body, step=n)["sigma_thetatheta"] for n in numbers]
+    found = fatigue.ruiz(result, body=body).tension
+    np.testing.assert_allclose(found, np.maximum(np.max(hoop, axis=0), 0.0), rtol=1e-6, atol=1e-6 * np.max(found))
+
+    # A place beside the contact, where stresses vary slowly.
+    loaded = np.any([result.steps[number - 1].pressure > 0.0 for number in numbers], axis=0)
+    turn = angle[loaded].max() + (0.1 if common else 0.01)
+    x = float(radius * np.sin(turn))
+    surface = [mfv.stress.stress(result, *point(turn, near), body=body, step=n)["sigma_thetatheta"].item() for n in numbers]
+    crack = fatigue.edge_crack(result, x, [1e-6], body=body).intensity[:, 0]
+    np.testing.assert_allclose(crack, 1.12152 * np.sqrt(np.pi * 1e-6) * np.array(surface), rtol=2e-3)
+    deep = fatigue.edge_crack(result, x, [0.1], body=body).intensity[:, 0]
+
+    def along(depth: np.ndarray, number: int) -> np.ndarray:
+        return mfv.stress.stress(result, *point(turn, radius + inward * depth), body=body, step=number)["sigma_thetatheta"]
+
+    expected = [float(fatigue.stress_intensity(lambda d, n=n: along(d, n), 0.1)) for n in numbers]
+    np.testing.assert_allclose(deep, expected, rtol=1e-9)
+
+    below = fatigue.averaged_cycle(result, x, 0.1, method="point", body=body)
+    np.testing.assert_allclose([below.x, below.y], point(turn, radius + inward * 0.05), rtol=0.0, atol=1e-12)
+    exact = fatigue.stress_cycle(result, *point(turn, near), body=body).stress
+    for method in ("line", "area"):
+        mean = fatigue.averaged_cycle(result, x, 1e-6, method=method, body=body).stress
+        np.testing.assert_allclose(mean, exact, atol=1e-3 * np.max(np.abs(exact)))
+
+
+def test_area_in_a_disk_is_in_the_disk() -> None:
+    """A half disk as large as the body covers the part of the disk that is nearer than L: the average of any stress there is finite."""
+    result = pad_scene().run()
+    for length in (1e-3, 0.1, 100.0):
+        assert np.isfinite(fatigue.averaged_cycle(result, 1.3949, length, method="area", body="upper").stress).all()
+    covered = fatigue.averaged_cycle(result, 0.0, 300.0, method="area", body="upper")
+    assert covered.y == pytest.approx(127.0, rel=1e-3) and covered.x == pytest.approx(0.0, abs=1e-9)
+
+
 def test_size_effect_needs_a_critical_distance() -> None:
     """Pads of one material and peak pressure: similar stresses, so the same life at the hot spot; below it a longer one under smaller pads."""
     script = runpy.run_path(str(EXAMPLES / "fretting_lives.py"))

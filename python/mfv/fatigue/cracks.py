@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..result import Result
-from .stress_cycle import inside, stress_cycle
+from ..stress import beneath, slope
+from .parameters import normal_stress
+from .stress_cycle import stress_cycle
 
 Array = NDArray[np.float64]
 
@@ -84,7 +86,7 @@ def edge_crack(
     states: Sequence[int] | None = None,
     thickness: float | None = None,
 ) -> EdgeCrack:
-    """Cracks normal to the surface at `x`, of increasing `length`, over a cycle of a result; the crack does not change the contact.
+    """Cracks along the inward normal of the surface at `x`, of increasing `length`, over a cycle of a result; the crack does not change the contact.
 
     `thickness`: as of `stress_intensity`; others and errors as of `stress_cycle`.
     """
@@ -92,9 +94,8 @@ def edge_crack(
     if crack.ndim != 1 or not crack.size or crack[0] <= 0.0 or np.any(np.diff(crack) <= 0.0):
         raise ValueError("lengths of cracks must be positive and increase")
     share, weights = _rule(crack, thickness)
-    down = crack[:, None] * share
-    up = inside(result, body, np.full_like(down, x), down)
-    history = stress_cycle(result, x, up, body=body, states=states).stress[..., 0]
+    across, up = beneath(result, body, x, crack[:, None] * share)
+    history = normal_stress(stress_cycle(result, across, up, body=body, states=states), slope(result, body, x))
     return EdgeCrack(float(x), crack, np.sqrt(np.pi * crack) * np.sum(weights * history, axis=-1))
 
 

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..result import Result
-from .stress_cycle import StressCycle, inside, stress_cycle
+from ..stress import beneath
+from .stress_cycle import StressCycle, stress_cycle
 
 Array = NDArray[np.float64]
 
@@ -43,8 +44,8 @@ def averaged_cycle(
     """Stresses over a cycle, averaged below the surface point at `x`: a StressCycle of one point, for the functions of parameters.
 
     `length`: the critical distance L [length]. `method`: 'point' at L/2, 'line' from the surface to 2L, 'area' of the half disk with the
-    radius L. `angle`: of the line or to the point from the inward normal, in radians, counterclockwise. Others and errors as of
-    `stress_cycle`; ValueError for an unknown method.
+    radius L below the tangent of the surface, as far as it is in the body. `angle`: of the line or to the point from the inward normal,
+    in radians, counterclockwise. Others and errors as of `stress_cycle`; ValueError for an unknown method.
     """
     if method == "point":
         distance, direction, weights = np.array([0.5 * length]), np.array([angle]), np.ones(1)
@@ -54,14 +55,16 @@ def averaged_cycle(
     elif method == "area":
         share, weight = _rule(0.0, 1.0, ALONG)
         turn, turn_weight = _rule(-0.5 * np.pi, 0.5 * np.pi, AROUND)
-        grid, direction = (values.ravel() for values in np.meshgrid(share, turn))
-        distance = length * grid**2
-        weights = np.outer(turn_weight / np.pi, 4.0 * share**3 * weight).ravel()
+        direction = np.repeat(turn, ALONG)
+        reach = np.full(AROUND, length)
+        if result.attributes.get(f"{body}_body", "").endswith("disk"):
+            reach = np.minimum(reach, 2.0 * result.scene[f"{body}_radius"] * np.cos(turn))
+        distance = np.outer(reach, share**2).ravel()
+        weights = np.outer(turn_weight * reach**2, 4.0 * share**3 * weight).ravel()
+        weights /= np.sum(weights)
     else:
         raise ValueError(f"method must be 'point', 'line' or 'area', not '{method}'")
-    side = 1.0 if body == "lower" else -1.0
-    across = x + side * distance * np.sin(direction)
-    up = inside(result, body, np.full_like(across, x), distance * np.cos(direction))
+    across, up = beneath(result, body, x, distance, direction)
     return stress_cycle(result, across, up, body=body, states=states).average(weights)
 
 

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from ..load_history import kept_states
 from ..result import Result
-from .stress_cycle import StressCycle, inside, last_cycle, stress_cycle
+from ..stress import surface_nodes
+from .stress_cycle import StressCycle, last_cycle, stress_cycle
 
 Array = NDArray[np.float64]
 
@@ -70,7 +71,7 @@ def smith_watson_topper(cycle: StressCycle) -> ParameterMap:
     poisson = cycle.poisson_ratio
 
     def value(angle: Array) -> Array:
-        normal = _normal_stress(cycle, angle)
+        normal = normal_stress(cycle, angle)
         lateral = 3.0 * cycle.hydrostatic - normal
         strain = (normal - poisson * lateral) / cycle.youngs_modulus
         return np.asarray(np.maximum(np.max(normal, axis=0), 0.0) * _amplitude(strain))
@@ -85,7 +86,7 @@ def fatemi_socie(cycle: StressCycle, *, yield_strength: float, k: float = 1.0) -
     """
 
     def value(angle: Array) -> Array:
-        tension = np.maximum(np.max(_normal_stress(cycle, angle), axis=0), 0.0)
+        tension = np.maximum(np.max(normal_stress(cycle, angle), axis=0), 0.0)
         return np.asarray(_amplitude(_shear_stress(cycle, angle)) / cycle.shear_modulus * (1.0 + k * tension / yield_strength))
 
     return _critical_plane("Fatemi-Socie", cycle, value)
@@ -95,7 +96,7 @@ def findley(cycle: StressCycle, *, k: float) -> ParameterMap:
     """(Shear stress amplitude) + k sigma_n,max on the plane where the sum is largest [force/length^2]. Findley (1959), J. Eng. Ind. 81, 301."""
 
     def value(angle: Array) -> Array:
-        return np.asarray(_amplitude(_shear_stress(cycle, angle)) + k * np.max(_normal_stress(cycle, angle), axis=0))
+        return np.asarray(_amplitude(_shear_stress(cycle, angle)) + k * np.max(normal_stress(cycle, angle), axis=0))
 
     return _critical_plane("Findley", cycle, value)
 
@@ -154,11 +155,12 @@ def ruiz(result: Result, *, body: str = "lower", states: Sequence[int] | None = 
         raise ValueError("Ruiz's parameters need friction: without a &friction law there is neither shear nor slip")
     numbers = last_cycle(result) if states is None else tuple(states)
     history = [kept_states(result).at(number) for number in numbers]
-    x = np.asarray(result.mesh.x)
-    along = stress_cycle(result, x, inside(result, body, x, np.zeros_like(x)), body=body, states=numbers).stress[..., 0]
+    x, y, slope = surface_nodes(result, body)
+    along = normal_stress(stress_cycle(result, x, y, body=body, states=numbers), slope)
+    tension = np.maximum(np.max(along, axis=0), 0.0)
     slips = np.array([state.slip for state in history])
     shears = np.array([state.shear for state in history])
-    return Ruiz(x, np.max(np.abs(shears), axis=0), np.ptp(slips, axis=0), np.maximum(np.max(along, axis=0), 0.0))
+    return Ruiz(np.asarray(result.mesh.x), np.max(np.abs(shears), axis=0), np.ptp(slips, axis=0), tension)
 
 
 def crossland_constant(bending_limit: float, torsion_limit: float) -> float:
@@ -208,7 +210,7 @@ def _invariant(name: str, cycle: StressCycle, values: Array) -> ParameterMap:
     return ParameterMap(name, cycle.x, cycle.y, values, np.full(cycle.x.shape, np.nan))
 
 
-def _normal_stress(cycle: StressCycle, angle: Array) -> Array:
+def normal_stress(cycle: StressCycle, angle: Array) -> Array:
     """Normal stress on planes with normals at these angles, shape (states, *shape)."""
     c, s = np.cos(angle), np.sin(angle)
     return np.asarray(cycle.stress[..., 0] * c**2 + cycle.stress[..., 1] * s**2 + 2.0 * cycle.stress[..., 2] * s * c)
