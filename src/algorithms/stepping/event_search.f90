@@ -114,15 +114,18 @@ contains
       subroutine consider(kind, slack, slack_rate, scale)
          integer, intent(in) :: kind
          real(wp), intent(in) :: slack, slack_rate, scale
-         real(wp) :: step
+         real(wp) :: step, speed
 
          if (.not. slack_rate < -rate_tolerance*scale) return
          step = max(slack, 0.0_wp)/(-slack_rate)
          if (step > violations%step(i)) return
-         if (.not. step < violations%step(i) .and. -slack_rate/scale < violations%speed(i)) return
+         ! No rate is a scale where every node slides at its limit.
+         speed = huge(1.0_wp)
+         if (scale > -slack_rate*tiny(1.0_wp)) speed = -slack_rate/scale
+         if (.not. step < violations%step(i) .and. speed < violations%speed(i)) return
          violations%kind(i) = kind
          violations%step(i) = step
-         violations%speed(i) = -slack_rate/scale
+         violations%speed(i) = speed
       end subroutine consider
    end subroutine find_violations
 
