@@ -108,10 +108,13 @@ def main():
     arrows, wrong = read_arrows(order, modules)
     if wrong:
         sys.exit("\n".join(["a folder uses one above it:", *wrong]))
-    if arguments.check and arguments.picture.read_text() != draw(order, arrows):
+    if not arguments.picture:
+        return
+    picture = draw(order, arrows)
+    if not arguments.check:
+        arguments.picture.write_text(picture)
+    elif arguments.picture.read_text() != picture:
         sys.exit(f"{arguments.picture} does not show the sources; run python3 scripts/dependencies.py {arguments.picture}")
-    if arguments.picture and not arguments.check:
-        arguments.picture.write_text(draw(order, arrows))
 
 
 if __name__ == "__main__":

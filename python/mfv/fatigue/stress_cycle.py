@@ -118,7 +118,8 @@ def last_cycle(result: Result) -> tuple[int, ...]:
 
 
 def _closed_loop(result: Result) -> tuple[int, ...]:
-    """Numbers in `result.steps`, from 1, of the states of the closed loop that ends with the last one; none if there is none."""
+    """Numbers in `result.steps`, from 1, of the states of a cycle that ends with the last state, without the state in which it begins.
+    Empty if no earlier state equals the last one, or if a prescribed load has an extreme outside the states in between."""
     states, names = result.steps, _prescribed(result)
     segments = [(int(state.get("step", 0)), int(state.get("reversal", 0))) for state in states]
     ends = [number for number, segment in enumerate(segments) if segments[number + 1 : number + 2] != [segment]]
@@ -142,7 +143,8 @@ def _closed_loop(result: Result) -> tuple[int, ...]:
 
 
 def _prescribed(result: Result) -> list[str]:
-    """Names of the loads and motions that a case prescribes; all but moments, which vary by round-off, if its input does not have them."""
+    """Names of the loads and motions that a case prescribes. Where its input does not say which (steps by a host, a history in a file):
+    all but moments, which vary by round-off."""
     parts = groups(result.attributes["input"])
     steps = [values for name, values in parts if name in ("step", "history")]
     last = max(int(state.get("step", 0)) for state in result.steps)
