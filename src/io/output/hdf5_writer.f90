@@ -14,7 +14,7 @@ module mfv_hdf5_writer
    use mfv_text_file, only: read_text
    implicit none
    private
-   public :: writer_type, check_writable, create_file, open_copy, finish_file, create_group, write_group, &
+   public :: writer_type, check_writable, create_file, open_copy, finish_file, write_group, &
              write_text, write_hdf5_version, note, along_grid
 
    !> A field along all scales of its group (see along_nothing in mfv_result_fields).
@@ -207,15 +207,21 @@ contains
       call note(writer, code)
    end subroutine find_bytes
 
-   subroutine create_group(writer, group)
+   !> Create a group, and those above it; the caller closes it.
+   subroutine create_group(writer, group, id)
       type(writer_type), intent(inout) :: writer
       character(*), intent(in) :: group
-      integer(hid_t) :: id
+      integer(hid_t), intent(out) :: id
+      integer(hid_t) :: creation
       integer :: code
 
-      call h5gcreate_f(writer%file, '/'//group, id, code)
+      call h5pcreate_f(H5P_LINK_CREATE_F, creation, code)
       call note(writer, code)
-      if (code == 0) call h5gclose_f(id, code)
+      call h5pset_create_inter_group_f(creation, 1, code)
+      call note(writer, code)
+      call h5gcreate_f(writer%file, group, id, code, lcpl_id=creation)
+      call note(writer, code)
+      call h5pclose_f(creation, code)
    end subroutine create_group
 
    !> A group with its own dimension scales: HDF5 limits the list of datasets of a scale to 64 KiB, too little for a long load
@@ -224,28 +230,29 @@ contains
       type(writer_type), intent(inout) :: writer
       character(*), intent(in) :: group
       type(field_type), intent(in) :: fields(:), scales(:)
-      integer(hid_t) :: dataset, scale(size(scales))
+      integer(hid_t) :: place, dataset, scale(size(scales))
       integer :: code, i, j
 
-      call create_group(writer, group)
+      call create_group(writer, group, place)
+      if (writer%code /= 0) return
       scale = -1
       do i = 1, size(scales)
          if (.not. any(fields%along == i .or. fields%along == along_grid)) cycle
-         call write_dataset(writer, group//'/'//scales(i)%name, scales(i), scale(i))
+         call write_dataset(writer, place, scales(i), scale(i))
          call h5dsset_scale_f(scale(i), code, scales(i)%name)
          call note(writer, code)
       end do
       do i = 1, size(fields)
          if (field_named(scales, fields(i)%name) > 0) cycle
          if (fields(i)%along == along_grid) then
-            call write_dataset(writer, group//'/'//fields(i)%name, fields(i), dataset, &
+            call write_dataset(writer, place, fields(i), dataset, &
                                [(size(scales(j)%values), j=1, size(scales))])
             do j = 1, size(scales)
                call h5dsattach_scale_f(dataset, scale(size(scales) + 1 - j), j, code)
                call note(writer, code)
             end do
          else
-            call write_dataset(writer, group//'/'//fields(i)%name, fields(i), dataset)
+            call write_dataset(writer, place, fields(i), dataset)
             if (fields(i)%along > 0 .and. fields(i)%along <= size(scales)) then
                call h5dsattach_scale_f(dataset, scale(fields(i)%along), 1, code)
                call note(writer, code)
@@ -256,13 +263,14 @@ contains
       do i = 1, size(scales)
          if (scale(i) >= 0) call h5dclose_f(scale(i), code)
       end do
+      call h5gclose_f(place, code)
    end subroutine write_group
 
-   !> Write a field at `path`, with its unit, description and flags; the dataset stays open. `shape`: its dimensions, the fastest
-   !> first, if it has more than one.
-   subroutine write_dataset(writer, path, field, dataset, shape)
+   !> Write a field into the group `place`, with its unit, description and flags; the dataset stays open. `shape`: its dimensions,
+   !> the fastest first, if it has more than one.
+   subroutine write_dataset(writer, place, field, dataset, shape)
       type(writer_type), intent(inout) :: writer
-      character(*), intent(in) :: path
+      integer(hid_t), intent(in) :: place
       type(field_type), intent(in) :: field
       integer(hid_t), intent(out) :: dataset
       integer, intent(in), optional :: shape(:)
@@ -284,7 +292,7 @@ contains
          call h5screate_simple_f(size(extent), extent, space, code)
       end if
       call note(writer, code)
-      call h5dcreate_f(writer%file, path, stored_type, space, dataset, code)
+      call h5dcreate_f(place, field%name, stored_type, space, dataset, code)
       call note(writer, code)
       if (code /= 0) return
       if (allocated(field%whole)) then

@@ -126,7 +126,6 @@ contains
 
       call find_scales(case, simulation, scales)
       groups = result_groups(simulation)
-      if (simulation%snapshot_count > 0) call create_group(writer, 'steps')
       do i = 1, size(groups)
          call group_fields(case, simulation, groups(i)%text, fields, observed)
          if (size(fields) > 0) call write_group(writer, groups(i)%text, fields, scales)

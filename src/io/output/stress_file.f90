@@ -217,26 +217,23 @@ contains
       if (allocated(request%x)) result%group = result%group//'_points'
       call open_copy(path, bytes, writer)
       if (writer%code == 0) then
-         call prepare_group(writer, state, result%group)
+         call remove_group(writer, result%group)
          call collect_fields(case, result, fields, scales)
          call write_group(writer, result%group, fields, scales)
       end if
       call finish_file(path, 'the stresses', writer, error)
    end subroutine write_stresses
 
-   !> Remove earlier stresses, and create the parents of their group.
-   subroutine prepare_group(writer, state, group)
+   !> Remove earlier stresses.
+   subroutine remove_group(writer, group)
       type(writer_type), intent(inout) :: writer
-      character(*), intent(in) :: state, group
+      character(*), intent(in) :: group
       integer :: code
 
-      if (.not. has(writer%file, 'stress')) call create_group(writer, 'stress')
-      if (.not. has(writer%file, state)) call create_group(writer, state)
-      if (has(writer%file, group)) then
-         call h5ldelete_f(writer%file, group, code)
-         call note(writer, code)
-      end if
-   end subroutine prepare_group
+      if (.not. has(writer%file, group)) return
+      call h5ldelete_f(writer%file, group, code)
+      call note(writer, code)
+   end subroutine remove_group
 
    !> The fields of a group, and the dimension scales of a grid.
    subroutine collect_fields(case, result, fields, scales)
