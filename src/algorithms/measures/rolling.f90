@@ -33,6 +33,8 @@ contains
       class(rolling_type), intent(inout) :: self
       real(wp), intent(in) :: interval, rolled(2), slid(2)
       logical, intent(in) :: forces_stay
+      !> An end that is missed by this fraction of an interval counts as passed.
+      real(wp), parameter :: round_off = 1.0e-9_wp
       real(wp) :: ends, last, fraction
       integer :: direction, i
 
@@ -44,8 +46,8 @@ contains
       self%direction = direction
       self%interval = interval
       if (direction == 0) return
-      last = aint_down(direction*rolled(2)/interval)
-      ends = last - aint_down(direction*rolled(1)/interval)
+      last = aint_down(direction*rolled(2)/interval + round_off)
+      ends = last - aint_down(direction*rolled(1)/interval + round_off)
       do i = nint(min(ends, real(intervals + 1, wp))) - 1, 0, -1
          fraction = ((last - i)*direction*interval - rolled(1))/(rolled(2) - rolled(1))
          self%slid(2:) = self%slid(:intervals)

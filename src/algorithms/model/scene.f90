@@ -66,8 +66,8 @@ module mfv_scene
       !> The nominal load step dL0 of nominal stepping, the conventional algorithm and explicit integration, as a fraction of each
       !> load segment.
       real(wp) :: load_step = 0.05_wp
-      !> Tolerance of the tractions for an increment with nonlinear friction, relative to the largest traction; 0: see
-      !> allowed_in_friction.
+      !> Tolerance of the tractions for an increment with nonlinear friction, relative to the largest traction or, if that is
+      !> smaller, to the change of the shear over the load segment; 0: see allowed_in_friction.
       real(wp) :: friction_tolerance = 0.0_wp
       !> Most iterations of the conventional algorithm at one load.
       integer :: most_iterations = 1000

@@ -676,8 +676,11 @@ contains
 
       normal = max(abs(fields%motion(motion_approach)), least*first%normal, smallest)
       tangential = max(abs(fields%motion(motion_shift)), least*first%tangential, smallest)
-      if (model%has_rigid_parts()) &
-         normal = max(normal, abs(fields%motion(motion_shift)), abs(fields%motion(motion_rotation))*model%length())
+      if (model%has_rigid_parts()) then
+         normal = max(normal, abs(fields%motion(motion_shift)), abs(fields%motion(motion_rotation))*model%length(), &
+                      maxval(abs(model%rigid_normal(fields))))
+         tangential = max(tangential, maxval(abs(model%rigid_tangential(fields))))
+      end if
       traction = max(least*first%traction, smallest)
       force = smallest
       shear_force = smallest

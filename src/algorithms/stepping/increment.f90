@@ -142,7 +142,7 @@ contains
       touched = any(creeps(path%state%status) .and. .not. path%state%fields%pressure > 0.0_wp)
       if (increment%step <= shortest_step(path) .and. .not. touched) return
       if (.not. path%trial > 0.0_wp) path%trial = first_trial
-      tolerance = path%model%scene%method%allowed_in_friction()
+      tolerance = path%model%scene%method%allowed_in_friction()*part_of_segment(path, increment%response%rate)
       predicted = increment
       length = min(left, path%trial)
       do attempt = 1, most_attempts
@@ -241,6 +241,20 @@ contains
       where (creeps(path%state%status) .and. .not. path%state%fields%pressure > 0.0_wp) &
          fields%shear = sign(min(abs(fields%shear), half*path%model%static_friction*max(fields%pressure, 0.0_wp)), fields%shear)
    end subroutine guess_touching
+
+   !> Change of the shear over a whole segment at its present rate, relative to the largest traction so far or at the end of the
+   !> segment, at most 1. Errors relative to it keep the dissipation of small cycles, whose area is of third order in their shear.
+   pure real(wp) function part_of_segment(path, rate)
+      class(contact_path_type), intent(in) :: path
+      type(contact_fields_type), intent(in) :: rate
+      real(wp), parameter :: least = 1.0e-4_wp
+      real(wp) :: scale, change
+
+      scale = max(path%certificate%traction_scale, maxval(abs(rate%pressure)))
+      change = maxval(abs(rate%shear))
+      part_of_segment = 1.0_wp
+      if (change < scale) part_of_segment = max(change/scale, least)
+   end function part_of_segment
 
    !> Difference of the tractions of two fields, relative to the largest traction so far, of the second one, or `elsewhere`.
    pure real(wp) function difference(path, one, other, elsewhere)

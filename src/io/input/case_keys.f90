@@ -242,7 +242,8 @@ contains
       call keys%add('solver', 'integration', kind_choice, 'dahl: second order with controlled error, or explicit with '// &
                     'load_step (appendix B)', default='second_order', choices=integration_names)
       call add_part_key(keys, 'friction_tolerance', '1e-4', 'dahl, weakening: error allowed in an increment, relative to the '// &
-                        'largest traction; with accuracy above 0 by default a tenth of it')
+                        'largest traction, or to the change of the shear over the load segment if that is smaller; with '// &
+                        'accuracy above 0 by default a tenth of it')
       call keys%add('solver', 'iterations', kind_integer, 'conventional: largest number of status corrections at one '// &
                     'load', default='1000', &
                     lower=1.0_wp, upper=1.0e6_wp)

@@ -717,7 +717,7 @@ contains
                     'the second run')
       call list%add('shear_change', sensitivity%shear, '1', 'largest change of a shear traction over the largest traction, in '// &
                     'the second run')
-      call list%add('dissipation_change', sensitivity%dissipation, '1', 'relative change of the dissipation, in the '//'second run')
+      call list%add('dissipation_change', sensitivity%dissipation, '1', 'relative change of the dissipation, in the second run')
       call list%add('stick_ratio_change', sensitivity%stick_ratio, '1', 'change of the stick ratio between nodes, in the '// &
                     'second run')
    end subroutine add_sensitivity
