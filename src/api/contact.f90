@@ -136,6 +136,7 @@ contains
             return
          end if
          contact%case%scene%method%accuracy = accuracy
+         contact%case%options = '--accuracy '//to_text(accuracy)
       end if
       if (present(suffix)) contact%case%result_path = with_suffix(contact%case%result_path, suffix)
       call contact%begin()
@@ -201,6 +202,9 @@ contains
       else if (sensitivity .and. .not. self%case%scene%friction%acts()) then
          call set_error(error, MFV_INPUT_ERROR, self%case%source//': --sensitivity: the case has no friction to perturb')
       end if
+      if (estimate) self%case%options = trim(self%case%options)//' --estimate'
+      if (sensitivity) self%case%options = trim(self%case%options)//' --sensitivity'
+      self%case%options = adjustl(self%case%options)
       self%case%error_estimate = self%case%error_estimate .or. estimate
       self%case%sensitivity = self%case%sensitivity .or. sensitivity
    end subroutine ask_for

@@ -141,6 +141,22 @@ def test_without_a_checkpoint_a_run_starts_from_step_1(tmp_path):
     assert code == COMPLETE and output == "" and errors == "case.h5 is complete; there is nothing to resume\n"
 
 
+def test_a_run_goes_on_with_the_options_that_it_began_with(tmp_path):
+    write_case(tmp_path, nodes=41, cycles=1)
+    wrong = "; give the same options; run without --resume to start again from step 1\n"
+    for options in ((), ("--accuracy", "1e-2"), ("--estimate", "--sensitivity")):
+        assert run(tmp_path, *options)[0] == COMPLETE
+        for others in ((), ("--accuracy", "1e-2"), ("--accuracy", "1e-3"), ("--estimate",), ("--estimate", "--sensitivity")):
+            code, _, errors = run(tmp_path, "--resume", *others)
+            if others == options:
+                assert code == COMPLETE and errors == "case.h5 is complete; there is nothing to resume\n"
+            else:
+                assert code == INPUT and errors.startswith("case.h5: the result of a run with") and errors.endswith(wrong)
+                assert " ".join(options or others).split()[0] in errors
+    with h5py.File(tmp_path / "case.h5") as result:
+        assert result.attrs["options"] == "--estimate --sensitivity"
+
+
 def test_a_run_that_failed_is_not_called_complete(tmp_path):
     write_case(tmp_path, nodes=41, cycles=1)
     path = tmp_path / "case.nml"

@@ -247,6 +247,8 @@ def test_table_and_masing_are_one_model_where_the_stiffness_falls() -> None:
 
 def test_masing_does_without_a_concave_backbone_and_sliders_do_not() -> None:
     curve = joint.Backbone.of([0.0, 1.0, 2.0, 3.0], [0.0, 1.0, 3.0, 3.5])
+    rise = joint.table(joint.Backbone.of([0.0, 1.0, 2.0, 3.0], [0.0, 2.0, 3.0, 4.0 + 1e-8]))
+    assert rise.slip.tolist() == [1.0] and rise.elastic == pytest.approx(1.0, abs=1e-7)
     with pytest.raises(ValueError, match="the stiffness increases at the displacement 1, from 1 to 2"):
         joint.table(curve)
     hull = curve.concave()

@@ -22,14 +22,16 @@ LEAST = 0.01
 def table(backbone: Backbone) -> Iwan:
     """The element that has the backbone exactly, linear between its points and beyond the last: a slider at every bend.
 
-    With the points u_i and the slopes k_i up to them, the slider at u_i has the stiffness k_i - k_(i+1). Raises ValueError if the
-    stiffness increases somewhere (use `Backbone.concave`, or `Masing`), or is constant.
+    With the points u_i and the slopes k_i up to them, the slider at u_i has the stiffness k_i - k_(i+1). A stiffness
+    that increases by less than 1e-6 of the first one, as round-off can cause, counts as constant. Raises ValueError if it increases
+    by more (use `Backbone.concave`, or `Masing`), or is constant everywhere.
     """
     slopes = backbone.stiffness
     drops = -np.diff(slopes)
-    bends = np.abs(drops) > 1.0e-9 * slopes[0]
-    if np.any(drops[bends] < 0.0):
-        where = int(np.flatnonzero(bends & (drops < 0.0))[0]) + 1
+    bends = drops > 1.0e-9 * slopes[0]
+    rises = drops < -1.0e-6 * slopes[0]
+    if np.any(rises):
+        where = int(np.flatnonzero(rises)[0]) + 1
         raise ValueError(
             f"the stiffness increases at the displacement {backbone.displacement[where]:.6g}, from {slopes[where - 1]:.6g} to "
             f"{slopes[where]:.6g}: no springs and sliders in parallel have this backbone; use backbone.concave(), or Masing"
@@ -101,7 +103,7 @@ def bouc_wen(measured: Measurement) -> BoucWen:
         return BoucWen(stiffness, sliding_force, exponent, float(unknowns[4]), elastic)
 
     def misfit(unknowns: Array) -> Array:
-        at, reached, lost = np.log(np.array(model(unknowns).cycles())[:, 1:])
+        at, reached, lost = np.log(np.maximum(np.array(model(unknowns).cycles())[:, 1:], np.finfo(float).tiny))
         u = np.log(amplitude)
         return np.append(np.interp(u, at, lost) - np.log(energy), np.interp(u, at, reached) - np.log(force))
 

@@ -28,7 +28,8 @@ module mfv_rolling
 contains
 
    !> Add an increment in which the contact rolls from `rolled(1)` to `rolled(2)` and the surfaces slide from `slid(1)` to
-   !> `slid(2)`, lengths. `forces_stay`: forces are constant. Starts anew without rolling and after a reversal.
+   !> `slid(2)`, lengths. `forces_stay`: forces are constant. Starts anew without rolling (by more than round-off) and after a
+   !> reversal.
    pure subroutine follow(self, interval, rolled, slid, forces_stay)
       class(rolling_type), intent(inout) :: self
       real(wp), intent(in) :: interval, rolled(2), slid(2)
@@ -39,7 +40,7 @@ contains
       integer :: direction, i
 
       direction = 0
-      if (abs(rolled(2) - rolled(1)) > 0.0_wp) direction = merge(1, -1, rolled(2) > rolled(1))
+      if (abs(rolled(2) - rolled(1)) > epsilon(interval)*interval) direction = merge(1, -1, rolled(2) > rolled(1))
       if (direction /= self%direction) self%passed = 0
       if (direction /= self%direction .or. .not. forces_stay) self%distance = 0.0_wp
       if (forces_stay) self%distance = self%distance + abs(rolled(2) - rolled(1))

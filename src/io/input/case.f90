@@ -14,6 +14,8 @@ module mfv_case
       type(scene_type) :: scene
       !> The input, verbatim, and the name of its file for messages.
       character(:), allocatable :: text, source
+      !> Options of the program that change the result, such as --accuracy 1e-2 --estimate.
+      character(len=64) :: options = ''
       !> Data in memory instead of files that the text names.
       type(case_data_type) :: data
       !> Path of the result file; empty: none.

@@ -210,6 +210,7 @@ contains
       call add('warnings', text)
       call add('input', case%text)
       call add('input_file', case%source)
+      call add('options', trim(case%options))
       call add('working_directory', directory)
       call add('mfv_version', library_version)
       call add('length_unit', case%length_unit)

@@ -66,15 +66,22 @@ contains
       type(simulation_type), intent(inout) :: simulation
       logical, intent(out) :: is_finished
       type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: input, version, outcome
+      type(error_type), allocatable :: without_options
+      character(:), allocatable :: input, version, outcome, options
 
       is_finished = .false.
       call read_text_attribute(file, 'input', input, error)
       if (.not. allocated(error)) call read_text_attribute(file, 'mfv_version', version, error)
       if (.not. allocated(error)) call read_text_attribute(file, 'outcome', outcome, error)
       if (allocated(error)) return
+      call read_text_attribute(file, 'options', options, without_options)
+      if (allocated(without_options)) options = ''
       if (input /= case%text) then
          call set_error(error, MFV_INPUT_ERROR, 'the result of another case: the text of the case file has changed')
+      else if (options == '' .and. case%options /= '') then
+         call set_error(error, MFV_INPUT_ERROR, 'the result of a run without '//trim(case%options)//'; give the same options')
+      else if (options /= case%options) then
+         call set_error(error, MFV_INPUT_ERROR, 'the result of a run with '//options//'; give the same options')
       else if (.not. has(file, restart_group)) then
          is_finished = outcome == status_outcome(MFV_COMPLETE)
          if (.not. is_finished) call set_error(error, MFV_INPUT_ERROR, 'the run ended ('//outcome//'); nothing to resume')
