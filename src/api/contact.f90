@@ -24,7 +24,7 @@ module mfv_contact
    use mfv_observables, only: observable_count, observables_of
    use mfv_result_fields, only: field_named, field_type, group_fields, result_attributes, result_groups
    use mfv_refinement, only: refine_at_edges
-   use mfv_result_file, only: check_writable, is_whole_result, resume_result, write_result
+   use mfv_result_file, only: check_writable, resume_result, write_result
    use mfv_safe_file, only: delete_path
    use mfv_scene, only: most_cycles, scene_type, step_type
    use mfv_simulation, only: new_simulation, simulation_type
@@ -215,15 +215,16 @@ contains
       class(contact_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
       real(wp), parameter :: seconds_of_a_minute = 60.0_wp
+      logical :: is_whole
 
       if (.not. has_hdf5) return
-      call check_writable(self%case%result_path, error)
+      call check_writable(self%case%result_path, error, is_whole)
       if (allocated(error)) then
          error%message = self%case%source//": &output file='"//self%case%result_path//"': "//error%message
          return
       end if
       self%checkpoint_path = self%case%result_path
-      if (is_whole_result(self%case%result_path)) self%checkpoint_path = with_suffix(self%case%result_path, '.partial')
+      if (is_whole) self%checkpoint_path = with_suffix(self%case%result_path, '.partial')
       self%checkpoint_seconds = self%case%checkpoint_minutes*seconds_of_a_minute
       self%next_checkpoint = seconds_now() + self%checkpoint_seconds
       self%simulation%keep_restart = .true.

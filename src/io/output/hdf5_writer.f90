@@ -6,10 +6,11 @@ module mfv_hdf5_writer
    use hdf5
    use h5ds
    use mfv_error, only: error_type, set_error
+   use mfv_hdf5_reader, only: read_text_attribute
    use mfv_hdf5_start, only: start_hdf5
    use mfv_result_fields, only: along_nothing, field_named, field_type
    use mfv_safe_file, only: check_replaceable, replace_file
-   use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
+   use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR, MFV_INTERRUPTED, status_outcome
    use mfv_strings, only: to_text
    use mfv_text_file, only: read_text
    implicit none
@@ -39,27 +40,34 @@ module mfv_hdf5_writer
 contains
 
    !> Error MFV_INPUT_ERROR if a result cannot be written to `path`; to be called before a long run. Only a result is overwritten,
-   !> not the case itself, a matrix or other data.
-   subroutine check_writable(path, error)
+   !> not the case itself, a matrix or other data. `is_whole`: there is the result of a run that was not interrupted.
+   subroutine check_writable(path, error, is_whole)
       character(*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error
-      logical :: is_there
+      logical, intent(out), optional :: is_whole
+      logical :: is_there, has_ended
 
       call check_replaceable(path, error)
       inquire (file=path, exist=is_there)
-      if (is_there .and. .not. allocated(error)) call check_is_result(path, error)
+      has_ended = .false.
+      if (is_there .and. .not. allocated(error)) call check_is_result(path, has_ended, error)
+      if (present(is_whole)) is_whole = has_ended
       if (allocated(error)) error%status = MFV_INPUT_ERROR
    end subroutine check_writable
 
-   !> Error MFV_FILE_ERROR if an existing file is not a result.
-   subroutine check_is_result(path, error)
+   !> Error MFV_FILE_ERROR if an existing file is not a result. `has_ended`: that of a run that was not interrupted.
+   subroutine check_is_result(path, has_ended, error)
       character(*), intent(in) :: path
+      logical, intent(out) :: has_ended
       type(error_type), allocatable, intent(out) :: error
       character(*), parameter :: so = '; not overwritten: choose another name, or move this file away'
+      type(error_type), allocatable :: unmarked
+      character(:), allocatable :: outcome
       integer(hid_t) :: file
-      logical :: is_hdf5, is_result
+      logical :: is_hdf5
       integer :: code
 
+      has_ended = .false.
       call start_hdf5()
       call h5fis_hdf5_f(path, is_hdf5, code)
       if (code /= 0 .or. .not. is_hdf5) then
@@ -72,9 +80,12 @@ contains
                         'open for writing'//so)
          return
       end if
-      call h5aexists_f(file, mark_of_result, is_result, code)
-      if (code /= 0 .or. .not. is_result) call set_error(error, MFV_FILE_ERROR, path//' exists and is not a result of MFV '// &
-                                                         '(no attribute '//mark_of_result//')'//so)
+      call read_text_attribute(file, mark_of_result, outcome, unmarked)
+      if (allocated(unmarked)) then
+         call set_error(error, MFV_FILE_ERROR, path//' exists and is not a result of MFV (no attribute '//mark_of_result//')'//so)
+      else
+         has_ended = outcome /= status_outcome(MFV_INTERRUPTED)
+      end if
       call h5fclose_f(file, code)
    end subroutine check_is_result
 

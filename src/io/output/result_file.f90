@@ -10,33 +10,14 @@ module mfv_result_file
    use mfv_kinds, only: wp
    use mfv_result_fields
    use mfv_simulation, only: simulation_type
-   use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, MFV_INTERRUPTED, status_outcome
+   use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: string_type
    use mfv_version, only: library_version
    implicit none
    private
-   public :: check_writable, is_whole_result, write_result, resume_result
+   public :: check_writable, write_result, resume_result
 
 contains
-
-   !> Whether `path` is the result of a run that was not interrupted.
-   logical function is_whole_result(path)
-      character(*), intent(in) :: path
-      type(error_type), allocatable :: error
-      character(:), allocatable :: outcome
-      integer(hid_t) :: file
-
-      is_whole_result = .false.
-      inquire (file=path, exist=is_whole_result)
-      if (.not. is_whole_result) return
-      call open_to_read(path, file, error)
-      if (.not. allocated(error)) then
-         call read_text_attribute(file, 'outcome', outcome, error)
-         call close_read(file)
-      end if
-      is_whole_result = .not. allocated(error)
-      if (is_whole_result) is_whole_result = outcome /= status_outcome(MFV_INTERRUPTED)
-   end function is_whole_result
 
    !> Restore a new simulation of a case from the result of an interrupted run at `path`. `is_finished`: that run is complete;
    !> nothing is done. Error MFV_INPUT_ERROR: the file is unreadable or damaged, or not a result of this case, this version and a

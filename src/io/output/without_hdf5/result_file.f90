@@ -9,24 +9,19 @@ module mfv_result_file
    use mfv_strings, only: string_type
    implicit none
    private
-   public :: check_writable, is_whole_result, write_result, resume_result
+   public :: check_writable, write_result, resume_result
 
 contains
 
    !> Error MFV_INPUT_ERROR, always.
-   subroutine check_writable(path, error)
+   subroutine check_writable(path, error, is_whole)
       character(*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error
+      logical, intent(out), optional :: is_whole
 
+      if (present(is_whole)) is_whole = .false.
       call set_error(error, MFV_INPUT_ERROR, path//' cannot be written: '//no_hdf5_message)
    end subroutine check_writable
-
-   !> Whether there is a result: false, always.
-   logical function is_whole_result(path)
-      character(*), intent(in) :: path
-
-      is_whole_result = .false. .and. len(path) > 0
-   end function is_whole_result
 
    !> Error MFV_INPUT_ERROR, always.
    subroutine resume_result(path, case, simulation, is_finished, error)
