@@ -3,6 +3,7 @@
 !> A function in this library specifies the length of its text by a specification function; other texts come from subroutines:
 !> gfortran stores the length of a deferred-length function result in static memory, which is not thread-safe.
 module mfv_strings
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use, intrinsic :: iso_c_binding, only: c_char, c_null_char
    use mfv_kinds, only: wp
    implicit none
@@ -71,9 +72,11 @@ contains
       integer, intent(in) :: digits
       character(len=longest_number) :: text
 
-      if (abs(value) <= 0.0_wp) then
+      if (ieee_is_nan(value)) then
+         text = 'NaN'
+      else if (abs(value) <= 0.0_wp) then
          text = '0'
-      else if (abs(value) >= 1.0e-3_wp .and. abs(value) < 10.0_wp**min(digits, 6) .or. .not. abs(value) > 0.0_wp) then
+      else if (abs(value) >= 1.0e-3_wp .and. abs(value) < 10.0_wp**min(digits, 6)) then
          text = without_exponent(value, digits)
       else
          text = with_exponent(value, digits)
