@@ -7,6 +7,7 @@
 #include <malloc.h>
 #endif
 #include <signal.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -30,27 +31,42 @@ void mfv_use_one_thread(void) {
 }
 
 #ifdef __ELF__
-/* The same for OpenBLAS that is linked statically: it starts its threads, which spin for some milliseconds, before main. */
-__attribute__((constructor(101))) static void start_one_thread(void) { setenv("OPENBLAS_NUM_THREADS", "1", 1); }
-#endif
-
 #if defined(__GLIBC__) && defined(__LP64__) && defined(MADV_HUGEPAGE)
 /* Keep freed memory, and let the first of it lie in large pages: arrays along the nodes come and go, and new pages cost more than the
    arithmetic on them. Only addresses are reserved; not where these are limited. */
-__attribute__((constructor(102))) static void keep_memory(void) {
-  enum { reserve = 1 << 26, most_on_heap = 1 << 25, keep = 1 << 30, pad = 1 << 20 };
+static void keep_memory(void) {
+  enum { large_page = 1 << 21, reserve = 1 << 26, most_on_heap = 1 << 25, keep = 1 << 30, pad = 1 << 20, beginning = 1 << 18 };
+  static char *volatile kept[2]; /* what lies before the first large page: neither used nor freed */
+  size_t size;
   struct rlimit addresses, data;
-  void *volatile block;
   if (getrlimit(RLIMIT_AS, &addresses) != 0 || addresses.rlim_cur != RLIM_INFINITY) return;
   if (getrlimit(RLIMIT_DATA, &data) != 0 || data.rlim_cur != RLIM_INFINITY) return;
   mallopt(M_MMAP_THRESHOLD, most_on_heap);
   mallopt(M_TRIM_THRESHOLD, keep);
   mallopt(M_TOP_PAD, reserve);
-  block = malloc(pad);
+  kept[0] = malloc(beginning); /* more than the heap has, and in none of the large pages */
   mallopt(M_TOP_PAD, pad);
-  if (block == NULL) return;
-  madvise((char *)sbrk(0) - reserve, reserve, MADV_HUGEPAGE);
-  free(block);
+  if (kept[0] == NULL) return;
+  size = large_page - (uintptr_t)(kept[0] + beginning) % large_page;
+  madvise(kept[0] + beginning + size, reserve - large_page, MADV_HUGEPAGE);
+  kept[1] = malloc(size);
+}
+#else
+static void keep_memory(void) {}
+#endif
+
+#ifdef MFV_STATIC_HDF5
+int H5dont_atexit(void);
+#endif
+
+/* Before main, because OpenBLAS that is linked statically starts its threads, which spin for some milliseconds, there. HDF5 need not
+   tidy up at the end: files are closed where they are written. */
+__attribute__((constructor(101))) static void start_process(void) {
+  keep_memory();
+  setenv("OPENBLAS_NUM_THREADS", "1", 1);
+#ifdef MFV_STATIC_HDF5
+  H5dont_atexit();
+#endif
 }
 #endif
 
