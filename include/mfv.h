@@ -273,9 +273,10 @@ int mfv_stress(mfv_case *handle, int body, int step, size_t count, const double 
                double *place, double *tension);
 
 /* The same for tractions given by the caller, such as those of a result file: pressure and shear (on the lower body, to the
- * right) at `nodes` nodes with intervals of the lengths width[] around the positions arc[] along the surface. contact_edge,
- * stick_edge: edges of contact and stick zones between the nodes, the left and the right one of each zone in turn, at any
- * nodes in ascending order, NaN at all others (state/contact_edge and state/stick_edge); or NULL: edges of contact are
+ * right) at `nodes` nodes with intervals of the lengths width[] around the positions arc[] along the surface, from left to
+ * right without overlap (else MFV_BAD_ARGUMENT). contact_edge, stick_edge: edges of contact and stick zones between the
+ * nodes, the left and the right one of each zone in turn, at any nodes in ascending order, NaN at all others
+ * (state/contact_edge and state/stick_edge); or NULL: edges of contact are
  * located from the nodal tractions, those of stick zones are not. Tractions are taken to vanish like a square root at the ends
  * of the loaded zone, except where a body of the case ends at a given contact_edge. Others, such as a uniform traction or a flat
  * punch's pressure on a case without that punch, give stresses that are wrong by 3 to 31 % near the surface. bulk_stress: a

@@ -906,6 +906,8 @@ contains
       real(c_double), intent(in), optional :: x(count), y(count)
       real(c_double), intent(inout), optional :: stresses(stress_count, count), place(3), tension(3)
       type(handle_type), pointer :: self
+      ! Of neighbours over the sum of their widths; where widths change, positions may not be quite in the middle.
+      real(wp), parameter :: least_distance = 0.45_wp
       type(interior_type) :: interior
       type(error_type), allocatable :: error
       logical :: usable
@@ -919,6 +921,9 @@ contains
       usable = all(ieee_is_finite([arc, width, pressure, shear, bulk_stress]))
       if (usable) usable = all(width > 0.0_wp)
       status = expected(self, usable, 'mfv_stress_under: values must be finite and widths positive')
+      if (status /= MFV_COMPLETE) return
+      usable = all(arc(2:) - arc(:nodes - 1) > least_distance*(width(2:) + width(:nodes - 1)))
+      status = expected(self, usable, 'mfv_stress_under: intervals must lie from left to right and not overlap')
       if (status /= MFV_COMPLETE) return
       call self%contact%make_interior(int(body), arc, width, pressure, shear, edges_or_nan(nodes, contact_edge), &
                                       edges_or_nan(nodes, stick_edge), bulk_stress, interior, error)

@@ -442,6 +442,14 @@ static void wrong_sizes(void) {
   CHECK(mfv_stress(b.handle, MFV_LOWER, 0, 0, NULL, NULL, NULL, NULL, NULL) == MFV_COMPLETE);
   refused(&b, mfv_stress_under(b.handle, MFV_LOWER, 0, b.x, b.width, b.pressure, b.pressure, NULL, NULL, 0.0, 0, NULL, NULL, NULL, b.numbers, NULL),
             "nodes");
+  /* Intervals lie from left to right, side by side. */
+  double arc[NODES], double_width[NODES];
+  for (int i = 0; i < NODES; ++i) arc[i] = b.x[NODES - 1 - i];
+  for (int i = 0; i < NODES; ++i) double_width[i] = 2.0 * b.width[i];
+  refused(&b, mfv_stress_under(b.handle, MFV_LOWER, NODES, arc, b.width, b.pressure, b.pressure, NULL, NULL, 0.0, 0, NULL, NULL, NULL, b.numbers, NULL),
+          "left to right");
+  refused(&b, mfv_stress_under(b.handle, MFV_LOWER, NODES, b.x, double_width, b.pressure, b.pressure, NULL, NULL, 0.0, 0, NULL, NULL, NULL, b.numbers, NULL),
+          "overlap");
   /* Texts are cut to the room that there is. */
   char tiny[2] = "z";
   CHECK(mfv_message(b.handle, tiny, 0) == MFV_BAD_ARGUMENT && tiny[0] == 'z');
