@@ -429,12 +429,23 @@ def _reversals(driven: Array, threshold: float) -> list[int]:
     return found
 
 
+def _with_ends(driven: Array, rows: list[int], threshold: float) -> list[int]:
+    """Reversals, completed by those that the record begins shortly after or ends shortly behind: turns by more than a threshold."""
+    if not rows:
+        return rows
+    first = int(np.argmax(np.abs(driven[: rows[0]] - driven[rows[0]]))) if rows[0] > 0 else 0
+    last = rows[-1] + int(np.argmax(np.abs(driven[rows[-1] :] - driven[rows[-1]])))
+    begins = abs(driven[0] - driven[first]) > threshold
+    ends = abs(driven[-1] - driven[last]) > threshold
+    return ([first] if begins else []) + rows + ([last] if ends else [])
+
+
 def _path_of(loop: Loop) -> _Path:
     """The path of the driven column. Raises InputError."""
     driven = loop._driven
     noise = (loop.force_noise if loop.drive == "tangential_force" else loop.shift_noise) or 0.0
     amplitude = float(np.ptp(driven))
-    rows = _reversals(driven, max(8.0 * noise, 0.05 * amplitude))
+    rows = _with_ends(driven, _reversals(driven, max(8.0 * noise, 0.05 * amplitude)), max(8.0 * noise, 0.005 * amplitude))
     if amplitude <= 10.0 * noise:
         raise input_error(f"{loop.name}: the driven column changes by less than ten times its noise")
     ends = [0, *rows, driven.size - 1]

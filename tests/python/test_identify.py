@@ -125,6 +125,16 @@ def test_an_amplitude_that_is_too_large_makes_friction_too_large() -> None:
     assert ratio == pytest.approx(1.051, abs=0.01)
 
 
+@pytest.mark.parametrize("late", [2, 3, 5, 97])
+def test_a_record_may_begin_shortly_after_a_turn(late: int) -> None:
+    loop = measured(0.6, 0.002, 0.002, seed=3)
+    rows = (np.arange(loop.shift.size) + late) % (loop.shift.size - 1)
+    later = Loop(loop.tangential_force[rows], loop.shift[rows], P, force_noise=loop.force_noise, shift_noise=loop.shift_noise)
+    whole, turned = identify.fit(cylinders(), loop, START), identify.fit(cylinders(), later, START)
+    for key, error in whole.standard_errors.items():
+        assert abs(turned.values[key] - whole.values[key]) < error
+
+
 @pytest.mark.parametrize("shape", ["triangle", "sine"])
 def test_levels_of_a_noisy_driven_column_are_unbiased(shape: str) -> None:
     errors_found, claimed = [], []
