@@ -233,6 +233,11 @@ contains
       node = [(edge - side*i, i=1, 3)]
       if (ends_with_body(model, edge, side) .or. .not. all(in_contact(state%status(node)))) return
       limit = model%static_friction(node)*state%fields%pressure(node)
+      ! A peak of the pressure next to the edge (rounded punches): only nodes outside it follow the line.
+      if (limit(3)**2 - limit(2)**2 < 0.5_wp*(limit(2)**2 - limit(1)**2)) then
+         node = node + side
+         limit = model%static_friction(node)*state%fields%pressure(node)
+      end if
       if (.not. (all(limit > 0.0_wp) .and. limit(3) > limit(1))) return
       towards = sign(1.0_wp, change(node(2)))*change(node)
       before = sign(1.0_wp, change(node(2)))*(state%fields%shear(node) - change(node))
