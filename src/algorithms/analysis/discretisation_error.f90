@@ -3,6 +3,7 @@
 module mfv_discretisation_error
    use mfv_body, only: body_type, shape_matrix
    use mfv_circle, only: kernel_fourier
+   use mfv_compliance, only: block_wt
    use mfv_contact_model, only: contact_model_type
    use mfv_error_bar
    use mfv_friction, only: friction_coefficient_type
@@ -311,6 +312,8 @@ contains
          allowances = 0.0_wp
          allowances(quantity_half_width) = 0.5_wp*contact
          allowances(quantity_stick_ratio) = norm2([stick, contact*state%stick_nodes()/max(state%contact_nodes(), 1)])/length
+         if (model%compliance%has_block(block_wt)) &
+            allowances(quantity_peak_pressure) = room_at_cusp(state%fields%pressure, holds(state%status))
          allowances(quantity_peak_shear) = room_at_peak(abs(state%fields%shear), &
                                                         model%static_friction*state%fields%pressure, holds(state%status))
       end associate
@@ -330,6 +333,38 @@ contains
          if (.not. ends_with_body(model, zones(i)%last, 1)) squares = squares + model%width(zones(i)%last)**2
       end do
    end function squares_at_edges
+
+   !> Uncertainty of a peak of the pressure that is a cusp, as with full coupling, force/length^2: at the edge of a stick zone,
+   !> which lies between two nodes, or where contact began when bodies are pressed with friction, where the strain of the stick
+   !> zone has a kink (Spence 1973). Arguments of shape (nodes), pressure in force/length^2.
+   pure real(wp) function room_at_cusp(pressure, held) result(room)
+      real(wp), intent(in) :: pressure(:)
+      logical, intent(in) :: held(:)
+      !> The edge of the stick zone is sought so many nodes from the peak.
+      integer, parameter :: reach = 2
+      real(wp) :: slope(-1:1)
+      integer :: peak, last, top, side, i
+
+      room = 0.0_wp
+      peak = maxloc(pressure, dim=1)
+      if (peak - reach <= 1 .or. peak + reach >= size(pressure)) return
+      do side = -1, 1, 2
+         ! Extrapolated to the peak: 0 if it is smooth.
+         slope(side) = 2.5_wp*(pressure(peak + side) - pressure(peak + 2*side)) &
+                       - 1.5_wp*(pressure(peak + 2*side) - pressure(peak + 3*side))
+      end do
+      room = max(0.5_wp*min(slope(-1), slope(1)), 0.0_wp)
+      do side = -1, 1, 2
+         do i = -reach, reach - 1
+            last = peak + side*i
+            top = peak + side*min(i, 0)
+            if (min(last + side, top - 2*side) < 1 .or. max(last + side, top - 2*side) > size(held)) cycle
+            if (.not. held(last) .or. held(last + side) .or. .not. held(top - 2*side)) cycle
+            room = max(room, max(i + 1, 1)*max(abs(pressure(top) - pressure(top - side)), &
+                                               abs(pressure(top - side) - pressure(top - 2*side))))
+         end do
+      end do
+   end function room_at_cusp
 
    !> Uncertainty of the peak of the shear traction, force/length^2. At the edge of a stick zone the true peak lies between
    !> two nodes, at most at the friction limit of the sticking one; elsewhere, difference to the nearer neighbouring value.
