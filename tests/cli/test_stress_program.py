@@ -57,6 +57,30 @@ def test_a_grid_is_put_into_the_file(folder):
     assert grid.von_mises.dims == ("depth", "x")
 
 
+def test_scales_and_datasets_list_each_other(folder):
+    assert stress("case.h5", "--points", 11, 7, cwd=folder).returncode == 0
+    with h5py.File(folder / "case.h5") as result:
+        listed, attached = 0, 0
+
+        def check(_, item):
+            nonlocal listed, attached
+            if not isinstance(item, h5py.Dataset):
+                return
+            listed += len(item.attrs.get("REFERENCE_LIST", ()))
+            for place, dimension in enumerate(item.dims):
+                for scale in dimension.values():
+                    # By HDF5, from the lists of both.
+                    assert h5py.h5ds.is_attached(item.id, scale.id, place)
+                    assert scale.shape == item.shape[place : place + 1]
+                    attached += 1
+
+        result.visititems(check)
+        assert listed == attached > 50
+        assert [d[0].name for d in result["stress/last/lower/von_mises"].dims] == [
+            f"/stress/last/lower/{k}" for k in ("depth", "x")
+        ]
+
+
 def test_states_and_bodies_stand_beside_each_other_and_are_replaced(folder):
     for arguments in ((), ("--step", 1), ("--points", 11, 11)):
         assert stress("case.h5", *arguments, cwd=folder).returncode == 0

@@ -1,7 +1,7 @@
 !> Writing HDF5 files atomically: HDF5 writes to memory, and the bytes then replace the file (mfv_safe_file). A failed run leaves an
 !> earlier file unchanged. On a full disk HDF5 itself would end the process with a segmentation fault at exit.
 module mfv_hdf5_writer
-   use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_null_char, c_null_ptr, c_ptr
+   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_loc, c_null_char, c_null_ptr, c_ptr, c_size_t
    use, intrinsic :: iso_fortran_env, only: int8
    use hdf5
    use h5ds
@@ -31,6 +31,18 @@ module mfv_hdf5_writer
       !> Bytes that the file must still have when it is replaced, for a copy with additions.
       character(:), allocatable, private :: expected
    end type writer_type
+
+   !> A dataset along a scale, and which of its dimensions, the slowest is 0.
+   type, bind(c) :: member_type
+      integer(haddr_t) :: dataset
+      integer(c_int) :: dimension
+   end type member_type
+
+   !> An array of variable length, as H5T's hvl_t.
+   type, bind(c) :: list_type
+      integer(c_size_t) :: length
+      type(c_ptr) :: values
+   end type list_type
 
    !> Every result has this attribute of the root, and no other file.
    character(*), parameter :: mark_of_result = 'outcome'
@@ -242,11 +254,13 @@ contains
       character(*), intent(in) :: group
       type(field_type), intent(in) :: fields(:), scales(:)
       integer(hid_t) :: place, dataset, scale(size(scales))
-      integer :: code, i, j
+      type(member_type) :: members(size(fields), size(scales))
+      integer :: count(size(scales)), code, i, j
 
       call create_group(writer, group, place)
       if (writer%code /= 0) return
       scale = -1
+      count = 0
       do i = 1, size(scales)
          if (.not. any(fields%along == i .or. fields%along == along_grid)) cycle
          call write_dataset(writer, place, scales(i), scale(i))
@@ -256,26 +270,99 @@ contains
       do i = 1, size(fields)
          if (field_named(scales, fields(i)%name) > 0) cycle
          if (fields(i)%along == along_grid) then
-            call write_dataset(writer, place, fields(i), dataset, &
-                               [(size(scales(j)%values), j=1, size(scales))])
-            do j = 1, size(scales)
-               call h5dsattach_scale_f(dataset, scale(size(scales) + 1 - j), j, code)
-               call note(writer, code)
-            end do
+            call write_dataset(writer, place, fields(i), dataset, [(size(scales(j)%values), j=1, size(scales))])
+            call attach(size(scales), [(j, j=size(scales), 1, -1)])
          else
             call write_dataset(writer, place, fields(i), dataset)
-            if (fields(i)%along > 0 .and. fields(i)%along <= size(scales)) then
-               call h5dsattach_scale_f(dataset, scale(fields(i)%along), 1, code)
-               call note(writer, code)
-            end if
+            if (fields(i)%along > 0 .and. fields(i)%along <= size(scales)) call attach(1, [fields(i)%along])
          end if
          call h5dclose_f(dataset, code)
       end do
       do i = 1, size(scales)
+         if (count(i) > 0) call write_members(writer, scale(i), members(:count(i), i))
          if (scale(i) >= 0) call h5dclose_f(scale(i), code)
       end do
       call h5gclose_f(place, code)
+
+   contains
+
+      !> Attach scales to the dimensions of fields(i), the slowest first.
+      subroutine attach(dimensions, which)
+         integer, intent(in) :: dimensions, which(dimensions)
+         type(hobj_ref_t_f) :: reference
+         integer(haddr_t) :: along(dimensions)
+         integer :: k
+
+         do k = 1, dimensions
+            call h5rcreate_f(place, scales(which(k))%name, reference, code)
+            call note(writer, code)
+            along(k) = reference%ref
+         end do
+         call write_scales(writer, dataset, along)
+         call h5rcreate_f(place, fields(i)%name, reference, code)
+         call note(writer, code)
+         do k = 1, dimensions
+            count(which(k)) = count(which(k)) + 1
+            members(count(which(k)), which(k)) = member_type(reference%ref, k - 1)
+         end do
+      end subroutine attach
    end subroutine write_group
+
+   !> The scales of a dataset, references by dimension, the slowest first. As H5DSattach_scale, which writes the lists of both
+   !> sides anew for every dataset and takes a fifth of the time of a small run.
+   subroutine write_scales(writer, dataset, along)
+      type(writer_type), intent(inout) :: writer
+      integer(hid_t), intent(in) :: dataset
+      integer(haddr_t), intent(in), target :: along(:)
+      type(list_type), target :: lists(size(along))
+      integer(hid_t) :: type
+      integer :: code, i
+
+      do i = 1, size(along)
+         lists(i) = list_type(1_c_size_t, c_loc(along(i)))
+      end do
+      call h5tvlen_create_f(H5T_STD_REF_OBJ, type, code)
+      call note(writer, code)
+      call write_list(writer, dataset, 'DIMENSION_LIST', type, size(along), c_loc(lists))
+      call h5tclose_f(type, code)
+   end subroutine write_scales
+
+   !> The datasets of a scale.
+   subroutine write_members(writer, scale, members)
+      type(writer_type), intent(inout) :: writer
+      integer(hid_t), intent(in) :: scale
+      type(member_type), intent(in), target :: members(:)
+      integer(hid_t) :: type
+      integer :: code
+
+      call h5tcreate_f(H5T_COMPOUND_F, int(storage_size(members)/8, size_t), type, code)
+      call note(writer, code)
+      call h5tinsert_f(type, 'dataset', 0_size_t, H5T_STD_REF_OBJ, code)
+      call note(writer, code)
+      call h5tinsert_f(type, 'dimension', h5offsetof(c_loc(members(1)), c_loc(members(1)%dimension)), H5T_NATIVE_INTEGER, code)
+      call note(writer, code)
+      call write_list(writer, scale, 'REFERENCE_LIST', type, size(members), c_loc(members))
+      call h5tclose_f(type, code)
+   end subroutine write_members
+
+   !> An attribute of `length` values of a `type`.
+   subroutine write_list(writer, object, name, type, length, values)
+      type(writer_type), intent(inout) :: writer
+      integer(hid_t), intent(in) :: object, type
+      character(*), intent(in) :: name
+      integer, intent(in) :: length
+      type(c_ptr), intent(in) :: values
+      integer(hid_t) :: space, attribute
+      integer :: code
+
+      call h5screate_simple_f(1, [int(length, hsize_t)], space, code)
+      call h5acreate_f(object, name, type, space, attribute, code)
+      call note(writer, code)
+      call h5awrite_f(attribute, type, values, code)
+      call note(writer, code)
+      call h5aclose_f(attribute, code)
+      call h5sclose_f(space, code)
+   end subroutine write_list
 
    !> Write a field into the group `place`, with its unit, description and flags; the dataset stays open. `shape`: its dimensions,
    !> the fastest first, if it has more than one.
@@ -323,19 +410,13 @@ contains
       type(writer_type), intent(inout) :: writer
       integer(hid_t), intent(in) :: dataset
       character(*), intent(in) :: flags
-      integer(hid_t) :: space, attribute
-      integer(hsize_t) :: extent(1)
-      integer :: code, i, flag
+      integer, allocatable, target :: values(:)
+      integer :: i, last
 
-      extent = 1 + count([(flags(i:i) == ' ', i=1, len(flags))])
+      last = count([(flags(i:i) == ' ', i=1, len(flags))])
+      values = [(i, i=0, last)]
       call write_text(writer, dataset, 'flag_meanings', flags)
-      call h5screate_simple_f(1, extent, space, code)
-      call h5acreate_f(dataset, 'flag_values', H5T_STD_I32LE, space, attribute, code)
-      call note(writer, code)
-      call h5awrite_f(attribute, H5T_NATIVE_INTEGER, [(flag, flag=0, int(extent(1)) - 1)], extent, code)
-      call note(writer, code)
-      call h5aclose_f(attribute, code)
-      call h5sclose_f(space, code)
+      call write_list(writer, dataset, 'flag_values', H5T_STD_I32LE, size(values), c_loc(values))
    end subroutine write_flags
 
    !> A text attribute.
