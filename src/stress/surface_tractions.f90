@@ -485,28 +485,36 @@ contains
       i = interval_of(self%x, x)
       if (i == 0) at = self%value(1)
       if (i == n) at = self%value(n)
-      if (i == 0 .or. i == n) return
-      at = self%value(i) + (self%value(i + 1) - self%value(i))*(x - self%x(i))/(self%x(i + 1) - self%x(i))
+      if (i > 0 .and. i < n) at = along(self, i, x)
    end function at
 
    !> The same with linear extrapolation, limited to between half and twice the last value.
    elemental real(wp) function continued(self, x)
       class(table_type), intent(in) :: self
       real(wp), intent(in) :: x
-      integer :: i, last, n
+      integer :: i, n
       real(wp) :: bounds(2)
 
-      continued = self%at(x)
       n = size(self%x)
-      if (n < 2) return
+      if (n < 2) then
+         continued = self%at(x)
+         return
+      end if
       i = interval_of(self%x, x)
+      continued = along(self, max(1, min(i, n - 1)), x)
       if (i > 0 .and. i < n) return
-      i = max(1, min(i, n - 1))
-      last = merge(1, n, x < self%x(1))
-      bounds = [0.5_wp, 2.0_wp]*self%value(last)
-      continued = self%value(i) + (self%value(i + 1) - self%value(i))*(x - self%x(i))/(self%x(i + 1) - self%x(i))
+      bounds = [0.5_wp, 2.0_wp]*self%value(max(1, i))
       continued = min(max(continued, minval(bounds)), maxval(bounds))
    end function continued
+
+   !> The straight line through the points i and i + 1 of a table.
+   pure real(wp) function along(self, i, x)
+      type(table_type), intent(in) :: self
+      integer, intent(in) :: i
+      real(wp), intent(in) :: x
+
+      along = self%value(i) + (self%value(i + 1) - self%value(i))*(x - self%x(i))/(self%x(i + 1) - self%x(i))
+   end function along
 
    !> Index of the last of ascending positions not beyond `x`, 0 for none, by bisection.
    pure integer function interval_of(positions, x) result(low)

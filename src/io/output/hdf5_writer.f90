@@ -81,15 +81,15 @@ contains
 
       has_ended = .false.
       call start_hdf5()
-      call h5fis_hdf5_f(path, is_hdf5, code)
-      if (code /= 0 .or. .not. is_hdf5) then
-         call set_error(error, MFV_FILE_ERROR, path//' exists and is not an HDF5 file'//so)
-         return
-      end if
       call h5fopen_f(path, H5F_ACC_RDONLY_F, file, code)
       if (code /= 0) then
-         call set_error(error, MFV_FILE_ERROR, path//' exists and cannot be read: it is damaged, or another program has it '// &
-                        'open for writing'//so)
+         call h5fis_hdf5_f(path, is_hdf5, code)
+         if (code /= 0 .or. .not. is_hdf5) then
+            call set_error(error, MFV_FILE_ERROR, path//' exists and is not an HDF5 file'//so)
+         else
+            call set_error(error, MFV_FILE_ERROR, path//' exists and cannot be read: it is damaged, or another program has it '// &
+                           'open for writing'//so)
+         end if
          return
       end if
       call read_text_attribute(file, mark_of_result, outcome, unmarked)
