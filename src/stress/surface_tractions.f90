@@ -367,15 +367,30 @@ contains
       end do
    end subroutine correct_error
 
-   !> Intervals next to an edge that are not used: two, or, without other edges nearby and without coupling, a fraction of
-   !> many more, so that the remaining discretisation error vanishes with mesh refinement.
-   pure integer function skipped_intervals(patch, zone)
+   !> Intervals next to each edge that are not used: two, or, without other edges nearby and without coupling, a fraction of
+   !> many more, so that the remaining discretisation error vanishes with mesh refinement. They are few where the `values` at
+   !> the nodes have a maximum near the edge, as on a rounded punch.
+   pure function skipped_intervals(patch, zone, values) result(skipped)
       type(patch_type), intent(in) :: patch
       type(zone_type), intent(in) :: zone
+      real(wp), intent(in) :: values(:)
+      integer :: skipped(2), nodes(size(values)), i, n, side
+      real(wp) :: reach
+      real(wp), parameter :: level = 1.0e-9_wp
 
-      skipped_intervals = 2
-      if (all(zone%known .or. .not. zone%rooted) .and. .not. any(abs(zone%power - 0.5_wp) > 0.0_wp)) &
-         skipped_intervals = max(2, nint(0.4_wp*sqrt(real(count(zone%contains_place(patch%arc)), wp))))
+      skipped = 2
+      if (.not. all(zone%known .or. .not. zone%rooted) .or. any(abs(zone%power - 0.5_wp) > 0.0_wp)) return
+      n = count(zone%contains_place(patch%arc))
+      if (n == 0) return
+      nodes(:n) = pack([(i, i=1, size(values))], zone%contains_place(patch%arc))
+      do side = 1, 2
+         do i = 1, n - 1
+            if (abs(values(nodes(i + 1))) <= abs(values(nodes(i)))*(1.0_wp + level)) exit
+         end do
+         reach = 2.0_wp*abs(patch%arc(nodes(i)) - zone%edge(side))/patch%width(nodes(i))
+         skipped(side) = max(2, nint(0.4_wp*sqrt(min(reach, real(n, wp)))))
+         nodes(:n) = nodes(n:1:-1)
+      end do
    end function skipped_intervals
 
    !> `values` at the nodes of a patch over the roots of a zone, as a table of its nodes, except those nearer to a rooted edge
@@ -385,13 +400,15 @@ contains
       real(wp), intent(in) :: values(:)
       type(zone_type), intent(inout) :: zone
       logical :: used(size(values))
-      integer :: intervals
+      integer :: intervals(2), i
 
-      do intervals = skipped_intervals(patch, zone), 0, -1
+      intervals = skipped_intervals(patch, zone, values)
+      do i = maxval(intervals), 0, -1
+         intervals = min(intervals, i)
          used = zone%contains_place(patch%arc)
-         if (zone%rooted(1)) used = used .and. patch%arc - zone%edge(1) > intervals*width_from(zone%edge(1))
-         if (zone%rooted(2)) used = used .and. zone%edge(2) - patch%arc > intervals*width_from(zone%edge(2))
-         if (count(used) > merge(1, 0, intervals > 0)) exit
+         if (zone%rooted(1)) used = used .and. patch%arc - zone%edge(1) > intervals(1)*width_from(zone%edge(1))
+         if (zone%rooted(2)) used = used .and. zone%edge(2) - patch%arc > intervals(2)*width_from(zone%edge(2))
+         if (count(used) > merge(1, 0, i > 0)) exit
       end do
       if (.not. any(used)) then
          ! The only nodes are outside the edges: set the resultant.

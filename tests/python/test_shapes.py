@@ -279,3 +279,30 @@ def test_tension_at_an_edge_that_the_refined_mesh_misses() -> None:
         tension[mesh.nodes] = result.observables.upper_tension
     for nodes in (130, 150, 170):
         assert tension[nodes] == pytest.approx(tension[601], rel=0.02), nodes
+
+
+@pytest.mark.parametrize(("nodes", "part"), [(401, 0.01), (801, 0.003)])
+def test_largest_tension_under_rounded_edges(nodes: int, part: float) -> None:
+    """8 and 16 nodes in each rounded edge, where the pressure has its maxima: superposed flat punches (Jaeger 1998; Ciavarella 1998)."""
+    flat, radius, half_width, mu = 1.0, 10.0, 1.05, 0.5
+    stiff = mfv.Body.half_plane(youngs_modulus=115000.0, poisson_ratio=0.32)
+    punch = mfv.Body.rounded_punch(flat, radius, youngs_modulus=115000.0, poisson_ratio=0.32)
+    modulus = 115000.0 / (1.0 - 0.32**2) / 2.0
+
+    def force(a: float) -> float:
+        angle = np.arccos(flat / a)
+        return float(modulus * a**2 / (4.0 * radius) * (2.0 * angle - np.sin(2.0 * angle)))
+
+    place, weight = np.polynomial.legendre.leggauss(40)
+    for stick in (1.01, 1.03):
+        least = np.arcsin(stick / half_width)
+        angle = least + (0.5 * np.pi - least) * 0.5 * (1.0 + place)
+        widths = half_width * np.sin(angle)
+        integral = 0.5 * (0.5 * np.pi - least) * np.sum(weight * widths * np.arccos(flat / widths))
+        steps = [
+            mfv.Step(normal_force=force(half_width), friction=False),
+            mfv.Step(force_ratio=1.0 - force(stick) / force(half_width)),
+        ]
+        result = mfv.Scene(stiff, punch, steps=steps, friction=mfv.Friction.coulomb(mu), mesh=mfv.Mesh(nodes=nodes)).run(check=True)
+        exact = 2.0 * mu * modulus / (np.pi * radius) * integral
+        assert result.observables.lower_tension == pytest.approx(exact, rel=part)
