@@ -32,10 +32,13 @@ contains
       real(wp), allocatable, intent(out) :: ends(:)
       type(piece_type), allocatable :: pieces(:)
       real(wp), allocatable :: used(:)
-      real(wp) :: graded, even
+      real(wp) :: at_ends(size(points)), graded, even, smallest
       integer :: i, j, intervals
 
-      call choose_points(points, left, right, nodes, used)
+      ! Points at an end up to round-off, such as edges at corners of a body, are there: no interval fits between.
+      smallest = (right - left)/real(nodes, wp)**grading
+      at_ends = merge(left, merge(right, points, abs(points - right) <= smallest), abs(points - left) <= smallest)
+      call choose_points(at_ends, left, right, nodes, used)
       call find_pieces(used, left, right, pieces)
       ends = [left]
       do i = 1, size(pieces)
