@@ -265,10 +265,11 @@ enum {
 
 /* Stresses inside a body (MFV_LOWER or MFV_UPPER) in the present state (step = 0) or in that of steps/000N (step = N), at
  * the points x[i], y[i] [length], y up from the contact: stresses[i*MFV_STRESS_COUNT + MFV_SIGMA_XX] and so on. NaN
- * outside the body. The largest von Mises stress, found by refinement: place = {stress, x, y}. The largest tension along the
- * surface: tension likewise; NaN if it is singular (shear acts at a sharp corner of the body); its x and y are NaN if there is
- * no tension. x and y of either are NaN if the bulk stress far from the contact is the largest. stresses (then with count = 0),
- * place and tension may be NULL. MFV_BAD_ARGUMENT for a rigid body or one given by a matrix. Since 0.1.0. */
+ * outside the body. The largest von Mises stress, found by refinement (in a disk to half its radius): place = {stress, x, y};
+ * NaN if it is unbounded, at a sharp corner in contact. The largest tension along the surface: tension likewise; NaN if it is
+ * singular (shear acts at a sharp corner of the body); its x and y are NaN if there is no tension. x and y of either are NaN if
+ * the bulk stress far from the contact is the largest. stresses (then with count = 0), place and tension may be NULL.
+ * MFV_BAD_ARGUMENT for a rigid body or one given by a matrix. Since 0.1.0. */
 int mfv_stress(mfv_case *handle, int body, int step, size_t count, const double *x, const double *y, double *stresses,
                double *place, double *tension);
 

@@ -215,7 +215,9 @@ def _scales(result: Result, field: StressField) -> str:
     parts = [
         f"$p_0$ = {field.largest_pressure:.4g}{unit}",
         f"$a$ = {field.half_width:.4g}{length}",
-        f"largest von Mises stress {field.largest.value:.4g}{unit}",
+        f"largest von Mises stress {field.largest.value:.4g}{unit}"
+        if np.isfinite(field.largest.value)
+        else "von Mises stress unbounded at a sharp corner",
     ]
     if field.tension.value > 0.0:
         parts[-1] += (

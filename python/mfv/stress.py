@@ -53,7 +53,8 @@ class StressField:
     y: Array
     values: dict[str, Array]
     #: Half the length of the loaded surface, its middle, the largest pressure, the largest von Mises stress, the largest tension along
-    #: the surface (NaN if it is singular; its place is NaN without tension). Places are NaN if the bulk stress is the largest.
+    #: the surface (NaN if they are unbounded, at a sharp corner; its place is NaN without tension). Places are NaN if the bulk stress is
+    #: the largest.
     half_width: float
     middle: float
     largest_pressure: float

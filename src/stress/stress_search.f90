@@ -23,9 +23,9 @@ module mfv_stress_search
 contains
 
    !> Largest von Mises stress. The best points of a coarse grid below the contact, graded towards the surface, are refined by
-   !> a simplex search (GSL), those on the surface along it. A disk is searched to half its radius, and not where stresses
-   !> only rise towards the force at its centre. Zero without load; of the bulk stress, with `x` and `y` NaN, if the contact raises
-   !> it nowhere.
+   !> a simplex search (GSL), those on the surface along it. A disk is searched to half its radius: the force that holds it acts
+   !> at its centre. NaN where tractions end at a sharp edge, near which stresses are unbounded. Zero without load; of the bulk
+   !> stress, with `x` and `y` NaN, if the contact raises it nowhere.
    type(largest_type) function largest_von_mises(interior) result(largest)
       type(interior_type), intent(in) :: interior
       integer, parameter :: across = 41, down = 21, starts = 6, neighbours = 2
@@ -40,6 +40,12 @@ contains
       largest%y = largest%x
       length = 2.0_wp*interior%half_width()
       if (.not. length > 0.0_wp) return
+      if (interior%elements%sharp) then
+         largest%value = ieee_value(1.0_wp, ieee_quiet_nan)
+         largest%x = largest%value
+         largest%y = largest%value
+         return
+      end if
       reach = length
       if (interior%body%circular()) reach = min(reach, 0.5_wp*interior%body%radius)
       positions = [(interior%middle() + length*((i - 1)/(across - 1.0_wp) - 0.5_wp), i=1, across)]
@@ -52,14 +58,12 @@ contains
             net(i, j) = von_mises_at(interior, positions(i), depths(j))
          end do
       end do
-      if (interior%body%circular()) call exclude_rise(net)
       do start = 1, starts
          best = maxloc(net)
          if (.not. net(best(1), best(2)) > 0.0_wp) exit
          place = [positions(best(1)), depths(best(2))]
          call minimum_near(search, [length/across, 0.2_wp*place(2)], place, value)
-         if (place(2) < search%deepest .or. .not. interior%body%circular()) &
-            call keep_larger(interior, largest, place(1), min(max(place(2), 0.0_wp), search%deepest))
+         call keep_larger(interior, largest, place(1), min(max(place(2), 0.0_wp), search%deepest))
          net(max(1, best(1) - neighbours):min(across, best(1) + neighbours), &
              max(1, best(2) - neighbours):min(down, best(2) + neighbours)) = -1.0_wp
       end do
@@ -74,22 +78,6 @@ contains
 
       value = -von_mises_at(self%interior, x(1), min(max(x(2), 0.0_wp), self%deepest))
    end function negative_von_mises
-
-   !> Exclude points of a grid (across, down) where stresses only rise towards its lower edge: the force at a disk's centre.
-   pure subroutine exclude_rise(net)
-      real(wp), intent(inout) :: net(:, :)
-      real(wp) :: below
-      integer :: i, j
-
-      do i = 1, size(net, 1)
-         below = huge(1.0_wp)
-         do j = size(net, 2), 1, -1
-            if (net(i, j) > below) exit
-            below = net(i, j)
-            net(i, j) = -1.0_wp
-         end do
-      end do
-   end subroutine exclude_rise
 
    !> Largest tension at the surface, force/length^2: at edges of contact and stick zones, where it has cusps, between them
    !> and beside the contact (on a circle, everywhere). NaN where tractions are singular, at the end of a surface under shear;

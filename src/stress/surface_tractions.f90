@@ -26,12 +26,13 @@ module mfv_surface_tractions
    end type zone_list_type
 
    !> Elements from `from` to `to`, lengths, in ascending order, with p + i tau linear from `first` to `last`, force/length^2;
-   !> shapes (elements). `edges`: of contact and stick zones, ascending. `singular`: shear at a sharp edge, where the
+   !> shapes (elements). `edges`: of contact and stick zones, ascending. `sharp`: tractions at a sharp edge, near which
+   !> stresses are unbounded. `singular`: shear among them, with which the
    !> tangential stress diverges.
    type :: traction_elements_type
       real(wp), allocatable :: from(:), to(:), edges(:)
       complex(wp), allocatable :: first(:), last(:)
-      logical :: singular = .false.
+      logical :: sharp = .false., singular = .false.
    end type traction_elements_type
 
    !> A piecewise linear function.
@@ -592,6 +593,7 @@ contains
       elements%first = [elements%first, values(:n - 1)]
       elements%last = [elements%last, values(2:)]
       elements%edges = [elements%edges, patch%contact%edge(1), stick_edges(patch), patch%contact%edge(2)]
+      elements%sharp = elements%sharp .or. abs(values(1)) > 0.0_wp .or. abs(values(n)) > 0.0_wp
       elements%singular = elements%singular .or. abs(aimag(values(1))) > 0.0_wp .or. abs(aimag(values(n))) > 0.0_wp
    end subroutine add_elements
 

@@ -595,6 +595,45 @@ def test_largest_von_mises_is_not_missed_by_grids(two_disks: mfv.Result) -> None
     assert sheared.largest.x / sheared.half_width == pytest.approx(0.82, abs=0.025)
 
 
+@pytest.mark.parametrize("degrees", [15.0, 30.0, 60.0])
+def test_largest_von_mises_in_a_pin(degrees: float) -> None:
+    """Against points along the axis; in wide contacts it is at the depth of half the radius, the deepest one searched, not on the surface."""
+    steel = {"youngs_modulus": 7.0e4, "poisson_ratio": 0.3}
+    hole = mfv.Body.hole(10.1, **steel)
+    force = float(mfv.reference.persson_force(np.radians(degrees), 0.1, 7.0e4, 0.3))
+    mesh = mfv.Mesh(nodes=101, half_angle=1.3 * degrees + 2.0, normals="radial")
+
+    def pressed(strength: float) -> mfv.Result:
+        pin = mfv.Body.disk(10.0, yield_strength=strength, **steel)
+        return mfv.Scene(hole, pin, mesh=mesh, steps=[mfv.Step(normal_force=force)]).run()
+
+    result = pressed(1.0e6)
+    depth = np.linspace(0.03, 5.0, 200)
+    axis = mfv.stress.stress(result, 0.0 * depth, depth, body="upper")
+    largest = axis.largest.value
+    assert largest >= np.max(axis["von_mises"]) * (1 - 1e-9)
+    assert largest == pytest.approx(np.max(axis["von_mises"]), rel=1e-3)
+    assert (axis.largest.y == pytest.approx(5.0, rel=0.01)) == (degrees > 20.0)
+    for strength, part in ((0.9, "von Mises stress of the upper body"), (1.1, "")):
+        warnings = pressed(strength * largest).attributes["warnings"]
+        assert ("yield_strength" in warnings) == bool(part) and part in warnings
+
+
+@pytest.mark.parametrize("nodes", [51, 401])
+def test_von_mises_is_unbounded_at_a_sharp_corner(nodes: int) -> None:
+    """The pressure diverges at the corners of a punch; with rounded edges it does not."""
+    plane = mfv.Body.half_plane(youngs_modulus=7.0e4, poisson_ratio=0.3, yield_strength=1.0e6)
+    rounded = mfv.Body.rounded_punch(0.5, 1.0, rigid=True)
+    results = [
+        mfv.Scene(plane, punch, mesh=mfv.Mesh(nodes=nodes), steps=[mfv.Step(normal_force=100.0)]).run()
+        for punch in (mfv.Body.flat_punch(1.0), rounded)
+    ]
+    largest = [mfv.stress.stress(result, [0.0], [-0.1]).largest for result in results]
+    assert np.isnan(largest[0].value) and np.isnan(largest[0].x)
+    assert "unbounded at a sharp corner" in results[0].attributes["warnings"]
+    assert largest[1].value > 0.0 and "corner" not in results[1].attributes["warnings"]
+
+
 #: Fretting of an aluminium alloy: a flat specimen and a pad of the radius 10 mm.
 FRETTING = """&body shape='half_plane', youngs_modulus=72100.0, poisson_ratio=0.33 /
 &body shape='disk', radius=10.0, youngs_modulus=72100.0, poisson_ratio=0.33 /

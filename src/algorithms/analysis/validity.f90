@@ -1,5 +1,6 @@
 !> Warnings where the assumptions of the model do not hold.
 module mfv_validity
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_body, only: body_type, shape_matrix
    use mfv_contact_model, only: needs_equal_intervals
    use mfv_contact_state, only: contact_state_type
@@ -206,16 +207,23 @@ contains
                                maxloc([(simulation%snapshots(i)%state%fields%motion(bulk), i=1, n)]), &
                                minloc([(simulation%snapshots(i)%state%fields%motion(bulk), i=1, n)])]
       do i = 1, size(candidates)
+         if (.not. ieee_is_finite(largest%value)) exit
          if (candidates(i) == 0 .or. candidates(i) == n) cycle
          other = largest_below(simulation, upper, simulation%padded(simulation%snapshots(candidates(i))))
-         if (.not. other%value > largest%value) cycle
+         if (ieee_is_finite(other%value)) then
+            if (.not. other%value > largest%value) cycle
+         end if
          largest = other
          where_it_is = 'in steps/'//to_text(candidates(i))
       end do
-      if (largest%value > body%yield_strength) &
+      if (.not. ieee_is_finite(largest%value)) then
+         call add_text(warnings, 'the '//merge('upper', 'lower', upper)//' body yields under any load: its stresses are '// &
+                       'unbounded at a sharp corner; they are bounded with rounded edges')
+      else if (largest%value > body%yield_strength) then
          call add_text(warnings, 'the largest von Mises stress of the '//merge('upper', 'lower', upper)//' body, '// &
                        to_text(largest%value, 4)//' '//where_it_is//', exceeds its yield_strength '// &
                        to_text(body%yield_strength)//': stresses and tractions are not valid beyond yield')
+      end if
    end subroutine check_yield
 
    !> Largest von Mises stress of a body in a state; zero without an interior.

@@ -257,7 +257,8 @@ contains
          call add_real(fields, names(i)%text, result%stress(i, :), along, result%stress_unit, trim(meaning(names(i)%text)))
          if (names(i)%text == 'principal_angle') fields(size(fields))%unit = '1'
       end do
-      call add('largest_von_mises', result%largest%value, result%stress_unit, 'largest von Mises stress in the body, by refinement')
+      call add('largest_von_mises', result%largest%value, result%stress_unit, 'largest von Mises stress in the body, by '// &
+               'refinement; NaN where it is unbounded')
       call add('largest_x', result%largest%x, case%length_unit, 'its position: x')
       call add('largest_y', result%largest%y, case%length_unit, 'its position: y')
       call add('largest_tension', result%tension%value, result%stress_unit, 'largest tension along the surface; NaN '// &

@@ -38,7 +38,11 @@ contains
       character(:), allocatable :: unit, largest
 
       unit = unit_suffix(result%stress_unit)
-      call describe(result, result%largest%value, result%largest%x, result%largest%y, largest)
+      if (ieee_is_finite(result%largest%value)) then
+         call describe(result, result%largest%value, result%largest%x, result%largest%y, largest)
+      else
+         largest = 'unbounded at a sharp corner of a body'
+      end if
       text = 'largest von Mises   '//largest//line_feed
       if (.not. ieee_is_finite(result%tension%value)) then
          text = text//'largest tension     singular: shear acts at a sharp corner of the body'//line_feed
@@ -51,10 +55,15 @@ contains
       text = text//'stresses            '//to_text(stress_count)//' quantities at '//to_text(size(result%stress, 2))// &
              ' points, in '//path//' under /'//result%group//line_feed
       warning = ''
-      if (result%yield_strength > 0.0_wp .and. result%largest%value > result%yield_strength) &
-         warning = 'warning: the largest von Mises stress, '//to_text(result%largest%value, 4)//unit// &
-                   ', exceeds the yield_strength '//to_text(result%yield_strength)//unit//' of the '// &
-                   trim(merge('upper', 'lower', request%upper))//' body: elasticity no longer holds'
+      if (.not. result%yield_strength > 0.0_wp) return
+      if (ieee_is_finite(result%largest%value)) then
+         if (.not. result%largest%value > result%yield_strength) return
+         largest = 'largest von Mises stress, '//to_text(result%largest%value, 4)//unit
+      else
+         largest = 'von Mises stress, unbounded at a sharp corner'
+      end if
+      warning = 'warning: the '//largest//', exceeds the yield_strength '//to_text(result%yield_strength)//unit//' of the '// &
+                merge('upper', 'lower', request%upper)//' body: elasticity no longer holds'
    end subroutine summarize_stresses
 
    !> A stress and its position, in the user's units and relative to the contact.
