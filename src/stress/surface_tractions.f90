@@ -624,7 +624,8 @@ contains
          if (points(i) > knots(number)) &
             call append(knots, number, [between(knots(number), points(i), roots, longest), points(i)])
       end do
-      knots = knots(:number)
+      ! Between edges that differ by round-off there is no room for points.
+      knots = pack(knots(:number), [.true., knots(2:number) > knots(:number - 1)])
    end function knots_of
 
    !> Append values to the first `number` of a list, whose storage grows with a margin.
@@ -691,7 +692,11 @@ contains
 
       if (any(is_at(left)) .and. any(is_at(right))) then
          associate (middle => 0.5_wp*(left + right))
-            knots = [between(left, middle, roots, longest), middle, between(middle, right, roots, longest)]
+            if (middle > left .and. middle < right) then
+               knots = [between(left, middle, roots, longest), middle, between(middle, right, roots, longest)]
+            else
+               allocate (knots(0))
+            end if
          end associate
       else if (any(is_at(left))) then
          knots = [(left + (right - left)*ratio**i, i=parts, 1, -1)]
