@@ -369,29 +369,40 @@ contains
    end subroutine correct_error
 
    !> Intervals next to each edge that are not used: two, or, without other edges nearby and without coupling, a fraction of
-   !> many more, so that the remaining discretisation error vanishes with mesh refinement. They are few where the `values` at
-   !> the nodes have a maximum near the edge, as on a rounded punch.
+   !> many more, so that the remaining discretisation error vanishes with mesh refinement. They are fewer where the `values` at
+   !> the nodes have a maximum near the edge, as on a rounded punch or beside the tip of a wedge.
    pure function skipped_intervals(patch, zone, values) result(skipped)
       type(patch_type), intent(in) :: patch
       type(zone_type), intent(in) :: zone
       real(wp), intent(in) :: values(:)
       integer :: skipped(2), nodes(size(values)), i, n, side
       real(wp) :: reach
+      logical :: many
       real(wp), parameter :: level = 1.0e-9_wp
 
-      skipped = 2
-      if (.not. all(zone%known .or. .not. zone%rooted) .or. any(abs(zone%power - 0.5_wp) > 0.0_wp)) return
+      skipped = 0
+      many = all(zone%known .or. .not. zone%rooted) .and. .not. any(abs(zone%power - 0.5_wp) > 0.0_wp)
       n = count(zone%contains_place(patch%arc))
       if (n == 0) return
       nodes(:n) = pack([(i, i=1, size(values))], zone%contains_place(patch%arc))
       do side = 1, 2
          do i = 1, n - 1
-            if (abs(values(nodes(i + 1))) <= abs(values(nodes(i)))*(1.0_wp + level)) exit
+            ! Nodes that slip beside the edge have values that vanish up to round-off.
+            if (size_of(i) > level*maxval(abs(values)) .and. size_of(i + 1) <= size_of(i)*(1.0_wp + level)) exit
          end do
          reach = 2.0_wp*abs(patch%arc(nodes(i)) - zone%edge(side))/patch%width(nodes(i))
-         skipped(side) = max(2, nint(0.4_wp*sqrt(min(reach, real(n, wp)))))
+         skipped(side) = min(2, int(0.25_wp*reach))
+         if (many) skipped(side) = max(skipped(side), nint(0.4_wp*sqrt(min(reach, real(n, wp)))))
          nodes(:n) = nodes(n:1:-1)
       end do
+
+   contains
+
+      pure real(wp) function size_of(number)
+         integer, intent(in) :: number
+
+         size_of = abs(values(nodes(number)))
+      end function size_of
    end function skipped_intervals
 
    !> `values` at the nodes of a patch over the roots of a zone, as a table of its nodes, except those nearer to a rooted edge

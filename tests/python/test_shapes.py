@@ -306,3 +306,23 @@ def test_largest_tension_under_rounded_edges(nodes: int, part: float) -> None:
         result = mfv.Scene(stiff, punch, steps=steps, friction=mfv.Friction.coulomb(mu), mesh=mfv.Mesh(nodes=nodes)).run(check=True)
         exact = 2.0 * mu * modulus / (np.pi * radius) * integral
         assert result.observables.lower_tension == pytest.approx(exact, rel=part)
+
+
+def test_tension_beside_the_tip_of_a_wedge() -> None:
+    """A stick zone ends three intervals from the tip, where the pressure is largest: the tension is that of fine meshes, behind the contact."""
+    steps = [mfv.Step(normal_force=4.754e-3), mfv.Step(normal_force=0.011886, tangential_force=1.0697e-3)]
+    found = {
+        nodes: mfv.Scene(
+            mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.01),
+            mfv.Body.wedge(4.95866, rigid=True),
+            friction=mfv.Friction.coulomb(0.5),
+            mesh=mfv.Mesh(nodes=nodes),
+            steps=steps,
+        )
+        .run(check=True)
+        .observables
+        for nodes in (101, 103, 603)
+    }
+    for nodes in (101, 103):
+        assert found[nodes].lower_tension == pytest.approx(found[603].lower_tension, rel=0.03), nodes
+        assert found[nodes].lower_tension_x == pytest.approx(found[603].lower_tension_x, rel=0.03), nodes
