@@ -10,7 +10,7 @@ module mfv_refinement
    use mfv_scene, only: scene_type
    use mfv_scene_indenter, only: indenter_of
    use mfv_simulation, only: history_none, new_simulation, simulation_type, states_reversals
-   use mfv_status, only: MFV_INTERRUPTED
+   use mfv_status, only: MFV_INTERRUPTED, MFV_MESH_EXCEEDED
    use mfv_zone_edges, only: find_patches, patch_type
    implicit none
    private
@@ -19,8 +19,8 @@ module mfv_refinement
    !> Coarser meshes have this part of the nodes, and at least this many.
    real(wp), parameter :: coarse_part = 0.5_wp
    integer, parameter :: fewest_coarse = 60
-   !> Room beyond the outermost contact edges, relative to the distance between them.
-   real(wp), parameter :: room = 0.03_wp
+   !> Room beyond the outermost contact edges, relative to the distance between them; so many times more each time it was too small.
+   real(wp), parameter :: room = 0.03_wp, more = 3.0_wp
    !> Most cycles of a step on the coarser meshes.
    integer, parameter :: most_cycles = 2
 
@@ -41,13 +41,15 @@ contains
       type(scene_type), intent(inout) :: scene
       logical, intent(out) :: interrupted
       class(observer_type), intent(inout), target, optional :: observer
-      integer, parameter :: passes = 3
+      integer, parameter :: passes = 3, most_passes = 6
       type(relay_type) :: watch
       type(scene_type) :: trial
       type(simulation_type) :: coarse
       type(edges_type) :: edges, first
       real(wp), allocatable :: ends(:)
+      real(wp) :: extra
       integer :: nodes, pass
+      logical :: exceeded, is_last
 
       interrupted = .false.
       nodes = scene%mesh%nodes
@@ -56,8 +58,9 @@ contains
       watch%runs = passes
       trial = scene_on_mesh(scene, max(nint(coarse_part*nodes), fewest_coarse))
       trial%steps%cycles = min(trial%steps%cycles, most_cycles)
-      do pass = 1, passes
-         watch%before = pass - 1
+      extra = room
+      do pass = 1, most_passes
+         watch%before = min(pass, passes) - 1
          coarse = new_simulation(trial, history_none, states_reversals)
          call coarse%run(watch)
          interrupted = coarse%outcome == MFV_INTERRUPTED
@@ -70,10 +73,15 @@ contains
             call take_contact(first, edges)
          end if
          call add_tip(scene, edges)
-         call limit(scene, edges)
-         call graded_ends(edges%points, edges%left, edges%right, merge(nodes, trial%mesh%nodes, pass == passes), ends)
+         ! The contact may jump to the next asperity, or become wider on the finer mesh.
+         exceeded = pass > 1 .and. coarse%outcome == MFV_MESH_EXCEEDED
+         if (exceeded) extra = more*extra
+         is_last = pass == most_passes .or. (pass >= passes .and. .not. exceeded)
+         call limit(scene, edges, extra)
+         call graded_ends(edges%points, edges%left, edges%right, merge(nodes, trial%mesh%nodes, is_last), ends)
          trial%mesh%ends = ends
          trial%mesh%nodes = size(ends) - 1
+         if (is_last) exit
       end do
       scene%mesh%ends = ends
       scene%mesh%nodes = size(ends) - 1
@@ -147,14 +155,15 @@ contains
       edges%is_contact = [.false., edges%is_contact]
    end subroutine add_tip
 
-   !> Widen the range of the edges to that of the mesh: some room beyond the contact, but not beyond the mesh of the user or the end
+   !> Widen the range of the edges to that of the mesh: the part `part` more on either side, but not beyond the mesh of the user or the end
    !> of a body, which must be an end of an interval.
-   subroutine limit(scene, edges)
+   subroutine limit(scene, edges, part)
       type(scene_type), intent(in) :: scene
       type(edges_type), intent(inout) :: edges
+      real(wp), intent(in) :: part
       real(wp) :: extra, most
 
-      extra = room*(edges%right - edges%left)
+      extra = part*(edges%right - edges%left)
       most = huge(1.0_wp)
       if (scene%mesh%half_width > 0.0_wp) most = scene%mesh%half_width
       if (.not. edges%left_ends) edges%left = max(last_touchable(scene, edges%left, edges%left - extra), -most)

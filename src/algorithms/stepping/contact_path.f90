@@ -81,6 +81,9 @@ module mfv_contact_path
       type(recent_intervals_type) :: recent
       !> Whether every event is recorded, or only what the caller records.
       logical :: record_events = .true.
+      !> What short steps are compared with, as a part of the segment: all of it, or, where it began without load, what is done. Flat
+      !> tips touch node after node at loads that are tiny parts of it.
+      real(wp) :: unit_step = 1.0_wp
       !> Dissipation at the start of the segment, force.
       real(wp), private :: start_dissipation = 0.0_wp
    contains
@@ -506,8 +509,8 @@ contains
       class(contact_path_type), intent(inout) :: self
       type(segment_type), intent(in) :: segment
       type(iteration_type), intent(inout) :: iteration
-      real(wp), dimension(self%model%nodes()) :: gap, normal, tangential
-      real(wp) :: smallest, round_off
+      real(wp), dimension(self%model%nodes()) :: gap, normal, tangential, round_off
+      real(wp) :: smallest
       integer :: status(self%model%nodes())
       logical :: touching(self%model%nodes())
 
@@ -520,7 +523,7 @@ contains
       if (allocated(self%derivatives)) call self%derivatives%touch(self%model, minloc(gap, mask=self%model%can_touch, dim=1))
       call refresh_derivatives(self)
       smallest = minval(gap, mask=self%model%can_touch)
-      round_off = 8*epsilon(1.0_wp)*max(maxval(abs(self%model%initial_gap)), abs(self%state%fields%motion(motion_approach)))
+      round_off = 8*epsilon(1.0_wp)*max(abs(self%model%initial_gap), abs(self%state%fields%motion(motion_approach)))
       touching = self%model%can_touch .and. gap - smallest <= round_off
       status = status_after(event_close, node_open, segment%friction .and. self%model%tangential, 0, &
                             self%holding(self%state%fields%shear))

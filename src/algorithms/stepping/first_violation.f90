@@ -57,6 +57,8 @@ module mfv_first_violation
       !> Fraction of the segment that is done; whether the last increment had a length, and whether it has reached the end.
       real(wp) :: done = 0.0_wp
       logical :: moved = .false., at_end = .false.
+      !> Whether the segment begins without load.
+      logical :: from_nothing = .false.
       !> The iteration at the present load, and the increment from there.
       type(iteration_type) :: iteration
       type(increment_type) :: increment
@@ -82,6 +84,7 @@ contains
 
       call path%start_segment(segment, error)
       if (allocated(error)) return
+      progress%from_nothing = .not. any(path%state%fields%pressure > 0.0_wp)
       nodes = size(path%state%status)
       do
          call make_increment(path, segment, progress, constraints, error)
@@ -128,6 +131,7 @@ contains
          call path%find_constraints(segment, progress%done, progress%iteration, constraints, ready, error)
          if (allocated(error)) return
          if (.not. ready) cycle
+         path%unit_step = merge(progress%done, 1.0_wp, progress%from_nothing)
          passed = .false.
          if (progress%since > many_events) call pass_accumulation(path, constraints, 1.0_wp - progress%done, milestone_spacing, &
                                                                   progress%iteration%rate_tolerance, progress%increment, passed)
@@ -155,7 +159,7 @@ contains
          if (progress%at_end) return
          call renew(progress%iteration)
          progress%standing = 0
-         if (.not. relaxing) progress%tiny = merge(progress%tiny + 1, 0, step < tie_tolerance(path))
+         if (.not. relaxing) progress%tiny = merge(progress%tiny + 1, 0, step < path%unit_step*tie_tolerance(path))
       end associate
       progress%since = progress%since + 1
       if (progress%done > progress%milestone + milestone_spacing) then

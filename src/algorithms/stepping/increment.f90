@@ -22,7 +22,7 @@ module mfv_increment
    private
    public :: increment_type, find_increment, shortest_step, tie_tolerance
 
-   !> Steps below `zero_step`, a fraction of the segment, count as zero; steps that differ by less than the fraction `least_tie`
+   !> Steps below `zero_step`, a fraction of path%unit_step, count as zero; steps that differ by less than the fraction `least_tie`
    !> are tied.
    real(wp), parameter :: zero_step = 1.0e-13_wp, least_tie = 1.0e-10_wp
 
@@ -47,12 +47,12 @@ contains
       tie_tolerance = max(least_tie, path%system%tolerance)
    end function tie_tolerance
 
-   !> Steps below this fraction of the segment count as zero: the tolerance of the linear solver, but at most `least_tie`, since
+   !> Steps below this part of the segment count as zero: the tolerance of the linear solver, but at most `least_tie`, since
    !> the first events of a fine mesh are close to each other.
    pure real(wp) function shortest_step(path)
       class(contact_path_type), intent(in) :: path
 
-      shortest_step = max(zero_step, min(path%system%tolerance, least_tie))
+      shortest_step = path%unit_step*max(zero_step, min(path%system%tolerance, least_tie))
    end function shortest_step
 
    !> Find an increment. `constraints`: from contact_path_type%find_constraints. `left`: the rest of the segment (1 in a stress
