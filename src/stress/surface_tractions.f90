@@ -370,7 +370,8 @@ contains
 
    !> Intervals next to each edge that are not used: two, or, without other edges nearby and without coupling, a fraction of
    !> many more, so that the remaining discretisation error vanishes with mesh refinement. They are fewer where the `values` at
-   !> the nodes have a maximum near the edge, as on a rounded punch or beside the tip of a wedge.
+   !> the nodes have a maximum near the edge, as on a rounded punch or beside the tip of a wedge; not on unequal intervals, of which
+   !> many are between.
    pure function skipped_intervals(patch, zone, values) result(skipped)
       type(patch_type), intent(in) :: patch
       type(zone_type), intent(in) :: zone
@@ -380,6 +381,8 @@ contains
       logical :: many
       real(wp), parameter :: level = 1.0e-9_wp
 
+      skipped = 2
+      if (patch%graded) return
       skipped = 0
       many = all(zone%known .or. .not. zone%rooted) .and. .not. any(abs(zone%power - 0.5_wp) > 0.0_wp)
       n = count(zone%contains_place(patch%arc))
