@@ -231,3 +231,27 @@ def test_wear_in_other_units_mirrored_and_upside_down(seed: int) -> None:
         compared(name, mirrored, side, True)
         compared(name, exchanged, 1.0, True)
     assert np.max(first.state.wear_depth) > 0.0
+
+
+def test_blocks_in_partial_slip_lose_little_wear() -> None:
+    """Narrow slip zones: the worn area of blocks against that of single cycles, within twice the tolerance."""
+
+    def area(**keys: Any) -> float:
+        result = mfv.Scene(
+            mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.3),
+            mfv.Body.disk(0.25, rigid=True),
+            friction=mfv.Friction.coulomb(MU),
+            mesh=mfv.Mesh(nodes=101),
+            steps=[
+                mfv.Step(normal_force=FORCE, friction=False),
+                mfv.Step(tangential_force=0.5 * MU * FORCE),
+                mfv.Step(tangential_force=-0.5 * MU * FORCE, cycles=60),
+            ],
+            wear=mfv.Wear(coefficient=0.1, **keys),
+            output=mfv.Output(states="none", history="none"),
+        ).run(check=True)
+        return float(np.sum(result.state.wear_depth * result.mesh.width))
+
+    exact = area(block=1)
+    for tolerance in (0.05, 0.01):
+        assert area(tolerance=tolerance) == pytest.approx(exact, rel=2.0 * tolerance), tolerance

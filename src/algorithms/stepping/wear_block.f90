@@ -46,13 +46,14 @@ contains
       real(wp), parameter :: safety = 0.9_wp, smallest = 0.1_wp
       type(problem_type) :: problem
       real(wp), allocatable :: pressure(:)
-      real(wp) :: change
+      real(wp) :: change, worn
       integer :: trial, margin, n
 
       depth = 0.0_wp
       cycles = remaining
       margin = size(work)/8
       problem%presses = presses
+      worn = sum(path%model%width*path%state%worn)/path%model%length()**2
       call gather(path, work, margin, problem)
       if (size(problem%node) == 0) return
       associate (wear => path%model%scene%wear)
@@ -65,13 +66,28 @@ contains
                margin = 2*margin + 1
                call gather(path, work, margin, problem)
             end do
-            change = sum(problem%width*abs(pressure - problem%pressure))/sum(problem%width*problem%pressure)
+            change = change_of(problem, cycles, pressure, worn)
             if (wear%block > 0 .or. cycles == 1 .or. change <= wear%tolerance) exit
             cycles = max(1, int(max(smallest, safety*wear%tolerance/change)*cycles))
          end do
       end associate
       depth(problem%node) = cycles*problem%softness*pressure*path%model%length()
    end subroutine find_wear_block
+
+   !> Change of the pressures over a block relative to the force, or, if it is larger, that of the worn area, twice its error,
+   !> relative to all that is worn: narrow slip zones have little of the force, but all of the wear.
+   pure real(wp) function change_of(problem, cycles, pressure, worn)
+      type(problem_type), intent(in) :: problem
+      integer, intent(in) :: cycles
+      real(wp), intent(in) :: pressure(:), worn
+      real(wp) :: area
+
+      associate (change => problem%width*abs(pressure - problem%pressure))
+         change_of = sum(change)/sum(problem%width*problem%pressure)
+         area = worn + cycles*sum(problem%softness*problem%width*problem%pressure)
+         if (area > 0.0_wp) change_of = max(change_of, cycles*sum(problem%softness*change)/area)
+      end associate
+   end function change_of
 
    !> Gather the problem of a block, for the nodes up to `margin` nodes beyond the contact; without nodes if nothing is in contact.
    subroutine gather(path, work, margin, problem)
@@ -98,7 +114,7 @@ contains
             if (known(i)) softness(i) = rate(i)/pressure(i)
          end do
          do i = 1, size(problem%node)
-            if (.not. known(problem%node(i))) softness(problem%node(i)) = softness(nearest_true(known, problem%node(i)))
+            if (.not. known(problem%node(i))) softness(problem%node(i)) = value_of_nearest(softness, known, problem%node(i))
          end do
          gap = model%gap(path%state%fields)
          associate (length => model%length(), stress => model%compliance%modulus, node => problem%node)
@@ -115,20 +131,21 @@ contains
       end associate
    end subroutine gather
 
-   !> The nearest true entry of `mask` to entry `i`; there is one.
-   pure integer function nearest_true(mask, i)
-      logical, intent(in) :: mask(:)
+   !> Of the values that are `known`, the one next to entry `i`, or the mean of two at the same distance; there is one.
+   pure real(wp) function value_of_nearest(values, known, i) result(value)
+      real(wp), intent(in) :: values(:)
+      logical, intent(in) :: known(:)
       integer, intent(in) :: i
-      integer :: j
+      integer :: j, sides(2)
 
-      nearest_true = i
-      do j = 1, size(mask)
-         nearest_true = max(1, i - j)
-         if (mask(nearest_true)) return
-         nearest_true = min(size(mask), i + j)
-         if (mask(nearest_true)) return
+      value = 0.0_wp
+      do j = 1, size(known)
+         sides = [max(1, i - j), min(size(known), i + j)]
+         if (.not. any(known(sides))) cycle
+         value = sum(values(sides), mask=known(sides))/count(known(sides))
+         return
       end do
-   end function nearest_true
+   end function value_of_nearest
 
    !> The pressures after `cycles` cycles of wear, by an active set.
    subroutine solve(problem, cycles, pressure)

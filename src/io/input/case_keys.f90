@@ -150,7 +150,8 @@ contains
       call keys%add('wear', 'coefficient', kind_real, 'needed; the gaps grow after every cycle of steps with cycles', &
                     unit='length^2/force', above=0.0_wp)
       call keys%add('wear', 'tolerance', kind_real, 'one cycle is computed for a block of cycles over which the pressure '// &
-                    'changes by less than this fraction of the normal force; the first cycle of a step wears alone', &
+                    'changes by less than this fraction of the normal force, and the wear by less than this fraction of all '// &
+                    'wear so far; the first cycle of a step wears alone', &
                     default='0.05', lower=1.0e-6_wp, upper=1.0_wp)
       call keys%add('wear', 'block', kind_integer, 'cycles in a block; if omitted: as many as the tolerance allows', lower=1.0_wp, &
                     upper=real(most_cycles, wp))
