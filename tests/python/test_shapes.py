@@ -326,3 +326,14 @@ def test_tension_beside_the_tip_of_a_wedge() -> None:
     for nodes in (101, 103):
         assert found[nodes].lower_tension == pytest.approx(found[603].lower_tension, rel=0.03), nodes
         assert found[nodes].lower_tension_x == pytest.approx(found[603].lower_tension_x, rel=0.03), nodes
+
+
+def test_a_datum_inside_the_contact_is_noticed() -> None:
+    """Half-width 1; the default datum is that of the contact, and no warning comes at once."""
+    steps = [mfv.Step(normal_force=WEDGE_FORCE)]
+    wedge = mfv.Body.wedge(ANGLE, rigid=True)
+    for datum, noticed in ((None, False), (0.9, False), (0.7, True)):
+        keys = {} if datum is None else {"datum": datum}
+        lower = mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.3, **keys)
+        warnings = mfv.Scene(lower, wedge, steps=steps).run(check=True).attributes["warnings"]
+        assert ("datum" in warnings) == noticed, datum

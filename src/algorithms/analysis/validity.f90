@@ -9,6 +9,7 @@ module mfv_validity
    use mfv_motions, only: motion_approach, motion_shift, motion_rotation, bulk_motions, &
                           control_displacement
    use mfv_node_status, only: in_contact
+   use mfv_scene, only: scene_type
    use mfv_simulation, only: simulation_type
    use mfv_slip_zones, only: contact_interval, needed_mesh, resolved_nodes, slip_record_type
    use mfv_state_interior, only: state_interior
@@ -25,7 +26,7 @@ module mfv_validity
 
 contains
 
-   !> Warnings about a simulation: few nodes in contact or slip zones; contact at large angles; surfaces that end, are steep
+   !> Warnings about a simulation: few nodes in contact or slip zones; contact at large angles, or beyond a datum; surfaces that end, are steep
    !> or are uncertain between points; yield (the largest von Mises stress by refinement); large rotations; lost digits.
    subroutine validity_warnings(simulation, warnings)
       type(simulation_type), intent(in) :: simulation
@@ -40,6 +41,7 @@ contains
       associate (scene => simulation%contact%model%scene)
          call check_angle(simulation, 'lower', scene%lower, warnings)
          call check_angle(simulation, 'upper', scene%upper, warnings)
+         call check_datum(simulation, scene, warnings)
          call warn_of_surface(simulation, .false., scene%lower, largest_angle, warnings)
          call warn_of_surface(simulation, .true., scene%upper, largest_angle, warnings)
          call check_yield(simulation, .false., scene%lower, warnings)
@@ -77,6 +79,25 @@ contains
                     'contact on the '//name//' body; vertical normals are inaccurate beyond '// &
                     to_text(largest_angle, 2)//' degrees')
    end subroutine check_angle
+
+   !> A datum inside the contact: the compliance of a flat contact of the half-width a is proportional to ln(2 d/a).
+   subroutine check_datum(simulation, scene, warnings)
+      type(simulation_type), intent(in) :: simulation
+      type(scene_type), intent(in) :: scene
+      type(string_type), allocatable, intent(inout) :: warnings(:)
+      real(wp), parameter :: most = 1.2_wp
+      real(wp) :: half_width
+
+      if (scene%lower%circular() .or. scene%upper%circular() .or. scene%lower%shape == shape_matrix) return
+      if (simulation%contact%state%contact_nodes() == 0) return
+      associate (arc => simulation%contact%model%arc, touching => in_contact(simulation%contact%state%status))
+         half_width = 0.5_wp*(maxval(arc, mask=touching) - minval(arc, mask=touching))
+      end associate
+      if (half_width > most*scene%datum()) &
+         call add_text(warnings, 'the contact half-width of '//to_text(half_width, 3)//' exceeds the datum '// &
+                       to_text(scene%datum(), 3)//' at which displacements are measured: approach and shift are too small for '// &
+                       'their forces, or negative; set a larger datum')
+   end subroutine check_datum
 
    !> Rotation is first order: exact for rolling parabolas, otherwise with errors that grow with rolled and slid distance.
    subroutine check_rotation(simulation, warnings)
