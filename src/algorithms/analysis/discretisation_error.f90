@@ -340,7 +340,7 @@ contains
    pure real(wp) function room_at_cusp(pressure, held) result(room)
       real(wp), intent(in) :: pressure(:)
       logical, intent(in) :: held(:)
-      !> The edge of the stick zone is sought so many nodes from the peak.
+      !> The edge of the stick zone is sought this many nodes from the peak.
       integer, parameter :: reach = 2
       real(wp) :: slope(-1:1)
       integer :: peak, last, top, side, i

@@ -19,7 +19,7 @@ module mfv_refinement
    !> Coarser meshes have this part of the nodes, and at least this many.
    real(wp), parameter :: coarse_part = 0.5_wp
    integer, parameter :: fewest_coarse = 60
-   !> Room beyond the outermost contact edges, relative to the distance between them; so many times more each time it was too small.
+   !> Room beyond the outermost contact edges, relative to the distance between them; factor if it was too small.
    real(wp), parameter :: room = 0.03_wp, more = 3.0_wp
    !> Most cycles of a step on the coarser meshes.
    integer, parameter :: most_cycles = 2
@@ -155,8 +155,8 @@ contains
       edges%is_contact = [.false., edges%is_contact]
    end subroutine add_tip
 
-   !> Widen the range of the edges to that of the mesh: the part `part` more on either side, but not beyond the mesh of the user or the end
-   !> of a body, which must be an end of an interval.
+   !> Widen the range of the edges to that of the mesh: by a `part` of it on either side, but not beyond the mesh of the user or
+   !> the end of a body, which must be an end of an interval.
    subroutine limit(scene, edges, part)
       type(scene_type), intent(in) :: scene
       type(edges_type), intent(inout) :: edges

@@ -26,8 +26,9 @@ module mfv_validity
 
 contains
 
-   !> Warnings about a simulation: few nodes in contact or slip zones; contact at large angles, or beyond a datum; surfaces that end, are steep
-   !> or are uncertain between points; yield (the largest von Mises stress by refinement); large rotations; lost digits.
+   !> Warnings about a simulation: few nodes in contact or slip zones; contact at large angles, or beyond a datum; surfaces that
+   !> end, are steep or are uncertain between points; yield (the largest von Mises stress by refinement); large rotations; lost
+   !> digits.
    subroutine validity_warnings(simulation, warnings)
       type(simulation_type), intent(in) :: simulation
       type(string_type), allocatable, intent(out) :: warnings(:)
