@@ -377,7 +377,7 @@ contains
       type(zone_type), intent(in) :: zone
       real(wp), intent(in) :: values(:)
       integer :: skipped(2), nodes(size(values)), i, n, side
-      real(wp) :: reach
+      real(wp) :: reach, nothing
       logical :: many
       real(wp), parameter :: level = 1.0e-9_wp
 
@@ -388,10 +388,11 @@ contains
       n = count(zone%contains_place(patch%arc))
       if (n == 0) return
       nodes(:n) = pack([(i, i=1, size(values))], zone%contains_place(patch%arc))
+      nothing = level*maxval(abs(values))
       do side = 1, 2
          do i = 1, n - 1
             ! Nodes that slip beside the edge have values that vanish up to round-off.
-            if (size_of(i) > level*maxval(abs(values)) .and. size_of(i + 1) <= size_of(i)*(1.0_wp + level)) exit
+            if (size_of(i) > nothing .and. size_of(i + 1) <= size_of(i)*(1.0_wp + level)) exit
          end do
          reach = 2.0_wp*abs(patch%arc(nodes(i)) - zone%edge(side))/patch%width(nodes(i))
          skipped(side) = min(2, int(0.25_wp*reach))
