@@ -523,7 +523,7 @@ contains
       if (allocated(self%derivatives)) call self%derivatives%touch(self%model, minloc(gap, mask=self%model%can_touch, dim=1))
       call refresh_derivatives(self)
       smallest = minval(gap, mask=self%model%can_touch)
-      round_off = 8*epsilon(1.0_wp)*max(abs(self%model%initial_gap), abs(self%state%fields%motion(motion_approach)))
+      round_off = 8*epsilon(1.0_wp)*max(maxval(abs(self%model%initial_gap)), abs(self%state%fields%motion(motion_approach)))
       touching = self%model%can_touch .and. gap - smallest <= round_off
       status = status_after(event_close, node_open, segment%friction .and. self%model%tangential, 0, &
                             self%holding(self%state%fields%shear))
