@@ -89,6 +89,23 @@ def test_the_worn_volume_is_that_of_the_friction_work() -> None:
         assert np.allclose(np.diff(result.cycles.worn_area), COEFFICIENT / MU * result.cycles.dissipation[:-1], rtol=1e-2)
 
 
+@pytest.mark.parametrize("law", ["work", "archard"])
+def test_the_dissipation_counts_all_cycles_of_the_blocks(law: str) -> None:
+    """The worn area is the coefficient times the work of friction; the same cycle by cycle. The energy balance holds."""
+    factor = 1.0 if law == "work" else MU
+    for run in (worn, sliding):
+        result = run(3000, wear={"law": law, "coefficient": factor * COEFFICIENT / MU})
+        assert len(result.cycles.cycle) < 300
+        total = result.observables.dissipation
+        assert COEFFICIENT / MU * total == pytest.approx(result.observables.worn_area, rel=2e-3)
+        assert total == result.summary.dissipation
+        assert total == pytest.approx(np.sum(result.mesh.width * result.state.friction_work), rel=1e-9)
+        assert total > 10.0 * np.sum(result.cycles.dissipation)
+        assert result.certificate.energy_balance < 1e-10
+    blocks, cycles = sliding(256), sliding(256, wear={"block": 1})
+    assert blocks.observables.dissipation == pytest.approx(cycles.observables.dissipation, rel=2e-3)
+
+
 def test_the_size_of_the_blocks_has_an_error_of_first_order() -> None:
     areas = [sliding(256, wear={"block": block}).observables.worn_area for block in (32, 16, 8, 4)]
     first, second, third = np.diff(areas)
