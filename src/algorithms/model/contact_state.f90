@@ -26,6 +26,8 @@ module mfv_contact_state
       real(wp), allocatable :: friction_work(:)
       !> Depth worn off both surfaces together, length, shape (nodes).
       real(wp), allocatable :: worn(:)
+      !> Area worn off in blocks of cycles that change the pressures by more than the tolerance of the wear, length^2.
+      real(wp) :: coarsely_worn = 0.0_wp
    contains
       procedure :: set_status
       procedure :: copy_from
@@ -83,6 +85,7 @@ contains
       self%skipped_dissipation = other%skipped_dissipation
       self%friction_work = other%friction_work
       self%worn = other%worn
+      self%coarsely_worn = other%coarsely_worn
    end subroutine copy_from
 
    !> State of node `node` for a friction law, with the given fields and coefficients of friction.

@@ -35,14 +35,16 @@ contains
 
    !> The number of cycles of a block, at most `remaining`, and the depth of their wear (length, shape (nodes)), from the friction
    !> work per unit of surface of its first cycle, whose end is the present state. `presses`: whether the normal force is given.
-   !> The contact may reach the end of the mesh: wear beyond it is missing.
-   subroutine find_wear_block(path, work, remaining, presses, cycles, depth)
+   !> The contact may reach the end of the mesh: wear beyond it is missing. `is_coarse`: the change is above the tolerance, in one
+   !> cycle or in a block of a given number of them.
+   subroutine find_wear_block(path, work, remaining, presses, cycles, depth, is_coarse)
       type(contact_path_type), intent(in) :: path
       real(wp), intent(in) :: work(:)
       integer, intent(in) :: remaining
       logical, intent(in) :: presses
       integer, intent(out) :: cycles
       real(wp), intent(out) :: depth(:)
+      logical, intent(out) :: is_coarse
       integer, parameter :: most_trials = 20
       real(wp), parameter :: safety = 0.9_wp, smallest = 0.1_wp
       type(problem_type) :: problem
@@ -51,6 +53,7 @@ contains
       integer :: trial, margin, n
 
       depth = 0.0_wp
+      is_coarse = .false.
       cycles = remaining
       margin = size(work)/8
       problem%presses = presses
@@ -73,6 +76,7 @@ contains
          end do
       end associate
       depth(problem%node) = cycles*problem%softness*pressure*path%model%length()
+      is_coarse = change > path%model%scene%wear%tolerance
    end subroutine find_wear_block
 
    !> The work of friction per unit of surface that wears it by `depth`: force/length and length, shape (nodes).
