@@ -92,6 +92,7 @@ contains
       if (self%body%circular()) longest = longest_element*body%radius
       seen = zones
       seen%beta = self%side*zones%beta
+      if (radial) seen%turn = self%outward/body%radius
       call find_traction_elements(arc, width, pressure, self%side*shear, seen, longest, self%elements)
       associate (e => self%elements)
          if (self%body%circular()) then

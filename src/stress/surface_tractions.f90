@@ -4,22 +4,24 @@
 !> friction |mu p| - |tau| (Hertz; Cattaneo and Mindlin, dissertation eqs. 3.1, 3.7). Both, divided by their roots, are
 !> smooth: they are interpolated linearly and extrapolated to the edges. Nodal values are corrected for the discretisation
 !> error where it is known (mfv_edge_solutions); those within two intervals of an edge are not used. On unequal intervals they are
-!> means, which are divided by mean roots, and near an edge its distance is less certain. Resultant forces are
-!> those of the nodal values. The result is projected onto linear elements that are graded towards the edges; the projection
-!> preserves the integrals of tractions with smooth functions, on which stresses depend.
+!> means, which are divided by mean roots, and near an edge its distance is less certain. Resultant forces (with radial normals:
+!> and the moment) are those of the nodal values. The result is projected onto linear elements that are graded towards the edges;
+!> the projection preserves the integrals of tractions with smooth functions, on which stresses depend.
 module mfv_surface_tractions
    use mfv_edge_solutions, only: discrete_over_exact, least_power, most_power, solved_distance
    use mfv_kinds, only: pi, wp
+   use mfv_lapack, only: dgesv
    implicit none
    private
    public :: zone_list_type, traction_elements_type, find_traction_elements, root_shift
 
    !> Edges, arc lengths, left one first; shapes (2, zones). At a sharp edge the pressure does not vanish: the end of a body's
-   !> surface. `beta`: Dundurs' parameter, 0 without coupling.
+   !> surface. `beta`: Dundurs' parameter, 0 without coupling. `turn`: angle by which the normals turn per arc length, radians per
+   !> length: with radial normals 1/R for a disk, -1/R for a hole; 0 for parallel normals.
    type :: zone_list_type
       real(wp), allocatable :: contact(:, :), stick(:, :)
       logical, allocatable :: sharp(:, :)
-      real(wp) :: beta = 0.0_wp
+      real(wp) :: beta = 0.0_wp, turn = 0.0_wp
       !> Minimum of elements in all contact zones: with fewer, the point of the largest von Mises stress, a flat maximum, would
       !> move to their ends.
       integer :: fewest_elements = 300
@@ -66,6 +68,8 @@ module mfv_surface_tractions
       type(zone_type), allocatable :: stick(:)
       type(table_type) :: limit, shear_rest
       logical :: has_ratio = .true.
+      !> See zone_list_type.
+      real(wp) :: turn = 0.0_wp
       !> Whether the contact edges are ends of intervals, to be located between the nodes; and whether intervals are unequal.
       logical :: counted = .false., graded = .false.
    contains
@@ -91,6 +95,7 @@ contains
       integer :: fewest, i, j
 
       allocate (elements%from(0), elements%to(0), elements%edges(0), elements%first(0), elements%last(0))
+      patch%turn = zones%turn
       patch%graded = maxval(width) - minval(width) > near*maxval(width)
       call assign_nodes(arc, width, abs(pressure) > 0.0_wp .or. abs(shear) > 0.0_wp, zones, edges, sharp, owner)
       fewest = max(zones%fewest_elements/max(size(edges, 2), 1), min(zones%fewest_elements, fewest_in_zone))
@@ -603,6 +608,7 @@ contains
       allocate (values(n))
       values(:) = projected(patch, knots)
       call balance(patch, knots, values)
+      if (abs(patch%turn)*(knots(n) - knots(1)) > 0.0_wp) call balance_inclined(patch, knots, values)
       elements%from = [elements%from, knots(:n - 1)]
       elements%to = [elements%to, knots(2:)]
       elements%first = [elements%first, values(:n - 1)]
@@ -791,19 +797,11 @@ contains
       real(wp), intent(in) :: knots(:)
       complex(wp), intent(inout) :: values(:)
       real(wp) :: shape(size(knots)), wanted(2), there(2), area(2)
-      integer :: i
 
       wanted = [sum(patch%pressure*patch%width), sum(patch%shear*patch%width)]
       there = integrals(values)
       if (abs(there(1)) > 0.0_wp .and. patch%has_ratio) values = values*(wanted(1)/there(1))
-      shape = patch%contact%roots(knots)
-      if (patch%has_ratio) shape = real(values, wp)
-      if (size(patch%stick) > 0) then
-         shape = 0.0_wp
-         do i = 1, size(patch%stick)
-            where (patch%stick(i)%contains_place(knots)) shape = patch%stick(i)%roots(knots)*real(values, wp)
-         end do
-      end if
+      shape = shape_of_correction(patch, knots, values)
       there = integrals(values)
       area = integrals(cmplx(shape, 0.0_wp, wp))
       area = max(area(1), tiny(1.0_wp))
@@ -822,5 +820,81 @@ contains
          integrals = [real(total, wp), aimag(total)]
       end function integrals
    end subroutine balance
+
+   !> What is added to the shear of a patch at the knots, up to a factor: see balance.
+   pure function shape_of_correction(patch, knots, values) result(shape)
+      type(patch_type), intent(in) :: patch
+      real(wp), intent(in) :: knots(:)
+      complex(wp), intent(in) :: values(:)
+      real(wp) :: shape(size(knots))
+      integer :: i
+
+      shape = patch%contact%roots(knots)
+      if (patch%has_ratio) shape = real(values, wp)
+      if (size(patch%stick) == 0) return
+      shape = 0.0_wp
+      do i = 1, size(patch%stick)
+         where (patch%stick(i)%contains_place(knots)) shape = patch%stick(i)%roots(knots)*real(values, wp)
+      end do
+   end function shape_of_correction
+
+   !> With normals that turn along the surface the integrals of p and tau are not the forces. Give the elements both forces of the
+   !> nodes and the moment of the shear about the centre of the normals: tractions are scaled by a linear function of the arc
+   !> length, and shear is added as in balance.
+   subroutine balance_inclined(patch, knots, values)
+      type(patch_type), intent(in) :: patch
+      real(wp), intent(in) :: knots(:)
+      complex(wp), intent(inout) :: values(:)
+      complex(wp) :: changes(size(knots), 3)
+      real(wp) :: place(size(knots)), middle, half, matrix(3, 3), missing(3), wanted(3)
+      complex(wp) :: force
+      integer :: i, n, pivot(3), code
+
+      n = size(knots)
+      middle = 0.5_wp*(knots(1) + knots(n))
+      half = 0.5_wp*(knots(n) - knots(1))
+      place = (knots - middle)/half
+      changes(:, 1) = values
+      if (.not. patch%has_ratio) changes(:, 1) = patch%contact%roots(knots)
+      changes(:, 2) = place*changes(:, 1)
+      changes(:, 3) = cmplx(0.0_wp, shape_of_correction(patch, knots, values), wp)
+      associate (tractions => cmplx(patch%pressure, patch%shear, wp)*patch%width)
+         force = sum(tractions*exp(cmplx(0.0_wp, -patch%turn*(patch%arc - middle), wp)))
+         wanted = conditions(force, sum(aimag(tractions)))
+      end associate
+      missing = wanted - of_elements(values)
+      do i = 1, 3
+         matrix(:, i) = of_elements(changes(:, i))
+      end do
+      call dgesv(3, 1, matrix, 3, pivot, missing, 3, code)
+      if (code == 0) values = values + matmul(changes, missing)
+
+   contains
+
+      !> Of the force along and across the normal in the middle and the integral of the shear: the first, the last, and their
+      !> difference, in proportion to a first moment of the pressure.
+      pure function conditions(force, shear)
+         complex(wp), intent(in) :: force
+         real(wp), intent(in) :: shear
+         real(wp) :: conditions(3)
+
+         conditions = [real(force, wp), (shear - aimag(force))/(patch%turn*half), shear]
+      end function conditions
+
+      !> The same of elements with ends `of`, which are linear in the sine of the angle from their middles (mfv_interior_circle).
+      pure function of_elements(of)
+         complex(wp), intent(in) :: of(:)
+         real(wp) :: of_elements(3)
+         complex(wp), dimension(size(of) - 1) :: mean, tilt, along
+         real(wp), dimension(size(of) - 1) :: angle
+
+         angle = 0.5_wp*patch%turn*(knots(2:) - knots(:n - 1))
+         mean = 0.5_wp*(of(2:) + of(:n - 1))
+         tilt = 0.5_wp*(of(2:) - of(:n - 1))
+         along = 2.0_wp*mean*sin(angle) - cmplx(0.0_wp, 1.0_wp, wp)*tilt*(angle - sin(angle)*cos(angle))/sin(angle)
+         along = along*exp(cmplx(0.0_wp, -patch%turn*(0.5_wp*(knots(2:) + knots(:n - 1)) - middle), wp))
+         of_elements = conditions(sum(along)/patch%turn, sum(2.0_wp*aimag(mean)*angle)/patch%turn)
+      end function of_elements
+   end subroutine balance_inclined
 
 end module mfv_surface_tractions

@@ -89,6 +89,43 @@ def test_the_worn_volume_is_that_of_the_friction_work() -> None:
         assert np.allclose(np.diff(result.cycles.worn_area), COEFFICIENT / MU * result.cycles.dissipation[:-1], rtol=1e-2)
 
 
+@pytest.mark.parametrize("law", ["work", "archard"])
+def test_the_dissipation_counts_all_cycles_of_the_blocks(law: str) -> None:
+    """The worn area is the coefficient times the work of friction; the same cycle by cycle. The energy balance holds."""
+    factor = 1.0 if law == "work" else MU
+    for run in (worn, sliding):
+        result = run(3000, wear={"law": law, "coefficient": factor * COEFFICIENT / MU})
+        assert len(result.cycles.cycle) < 300
+        total = result.observables.dissipation
+        assert COEFFICIENT / MU * total == pytest.approx(result.observables.worn_area, rel=2e-3)
+        assert total == result.summary.dissipation
+        assert total == pytest.approx(np.sum(result.mesh.width * result.state.friction_work), rel=1e-9)
+        assert total > 10.0 * np.sum(result.cycles.dissipation)
+        assert result.certificate.energy_balance < 1e-10
+    blocks, cycles = sliding(256), sliding(256, wear={"block": 1})
+    assert blocks.observables.dissipation == pytest.approx(cycles.observables.dissipation, rel=2e-3)
+
+
+@pytest.mark.parametrize("coefficient", [1.0, 10.0, 100.0])
+def test_wear_of_whole_slip_zones_in_few_cycles_is_warned_of(coefficient: float) -> None:
+    """A few cycles against many that wear as much together: right to 6 %, or a warning."""
+    warned = []
+    for cycles in (1, 4, 16):
+        few = worn(cycles, wear={"coefficient": coefficient})
+        many = worn(32 * cycles, wear={"coefficient": coefficient / 32.0, "block": 1})
+        error = abs(few.observables.worn_area / many.observables.worn_area - 1.0)
+        warned.append("of the worn area is from cycles" in few.attributes["warnings"])
+        assert warned[-1] or error < 0.06
+        assert "of the worn area" not in many.attributes["warnings"]
+    # The wear of 16 large cycles is that of the worn limit.
+    assert warned[0] == (coefficient > 1.0) and not warned[2]
+
+
+def test_given_blocks_that_are_too_large_are_warned_of() -> None:
+    result = worn(1000, wear={"coefficient": 0.1, "block": 500})
+    assert result.attributes["warnings"].startswith("100 % of the worn area is from cycles, or given blocks of cycles")
+
+
 def test_the_size_of_the_blocks_has_an_error_of_first_order() -> None:
     areas = [sliding(256, wear={"block": block}).observables.worn_area for block in (32, 16, 8, 4)]
     first, second, third = np.diff(areas)

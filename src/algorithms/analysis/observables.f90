@@ -30,7 +30,7 @@ module mfv_observables
                                 row_type('tangential_force', 'force/length', 'tangential force Q per unit thickness at the end'), &
                                 row_type('approach', 'length', 'approach of the upper body at the end'), &
                                 row_type('shift', 'length', 'shift of the upper body to the right at the end'), &
-                                row_type('dissipation', 'force', 'energy dissipated since the start, per unit thickness'), &
+                       row_type('dissipation', 'force', 'energy dissipated so far per unit thickness (with wear: by all cycles)'), &
                                 row_type('contact_half_width', 'length', &
                                     'half the length of the contact at the end, from edges between nodes, where it is one patch'), &
            row_type('contact_length', 'length', 'length of the contact at the end, of all its patches, from edges between nodes'), &

@@ -27,8 +27,8 @@ module mfv_validity
 contains
 
    !> Warnings about a simulation: few nodes in contact or slip zones; contact at large angles, or beyond a datum; surfaces that
-   !> end, are steep or are uncertain between points; yield (the largest von Mises stress by refinement); large rotations; lost
-   !> digits.
+   !> end, are steep or are uncertain between points; yield (the largest von Mises stress by refinement); large rotations; wear of
+   !> much at once; lost digits.
    subroutine validity_warnings(simulation, warnings)
       type(simulation_type), intent(in) :: simulation
       type(string_type), allocatable, intent(out) :: warnings(:)
@@ -56,6 +56,7 @@ contains
       call check_slip_zones(simulation, warnings)
       call check_order(simulation%contact%model%scene%lower, warnings)
       call check_rotation(simulation, warnings)
+      call check_wear(simulation, warnings)
       largest = simulation%contact%certificate%largest()
       if (largest > max(good, simulation%contact%model%scene%method%allowed_residual())) &
          call add_text(warnings, 'the largest relative residual is '//to_text(largest, 2)// &
@@ -99,6 +100,25 @@ contains
                        to_text(scene%datum(), 3)//' at which displacements are measured: approach and shift are too small for '// &
                        'their forces, or negative; set a larger datum')
    end subroutine check_datum
+
+   !> Cycles, or given blocks of them, that wear too much at once: slip paths are constant within them, pressures are those at the
+   !> end. In many more cycles, in which the wear becomes small, it tends to the same limit.
+   subroutine check_wear(simulation, warnings)
+      type(simulation_type), intent(in) :: simulation
+      type(string_type), allocatable, intent(inout) :: warnings(:)
+      real(wp) :: worn, last
+
+      associate (model => simulation%contact%model, state => simulation%contact%state)
+         if (.not. model%scene%wear%acts() .or. simulation%cycle_count == 0) return
+         worn = model%force(state%worn)
+         last = worn - simulation%cycles(simulation%cycle_count)%worn_area
+         if (.not. min(state%coarsely_worn, last) > model%scene%wear%tolerance*worn) return
+         call add_text(warnings, to_text(100.0_wp*state%coarsely_worn/worn, 3)//' % of the worn area is from cycles, or given '// &
+                       'blocks of cycles, that change the pressures or the wear by more than the fraction '// &
+                       to_text(model%scene%wear%tolerance, 2)//' (tolerance of &wear): it may be half of the right one; use a '// &
+                       'smaller coefficient and more cycles, or a smaller block')
+      end associate
+   end subroutine check_wear
 
    !> Rotation is first order: exact for rolling parabolas, otherwise with errors that grow with rolled and slid distance.
    subroutine check_rotation(simulation, warnings)

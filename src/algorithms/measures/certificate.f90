@@ -299,7 +299,7 @@ contains
       type(contact_fields_type), intent(in) :: before
       type(contact_state_type), intent(in) :: after
       logical, intent(in) :: is_large
-      real(wp) :: stored, works(motion_count), own(motion_count)
+      real(wp) :: stored, dissipated, works(motion_count), own(motion_count)
       integer :: i
 
       associate (now => after%fields)
@@ -320,9 +320,10 @@ contains
                                            i=1, motion_count)])
          end if
       end associate
-      if (is_large) self%work = stored + after%dissipation
-      self%energy = max(self%energy, self%gross_work, abs(stored), after%dissipation)
-      if (.not. is_large) call note(self, energy_balance, abs(self%work - stored - after%dissipation), self%energy)
+      dissipated = after%dissipation - after%skipped_dissipation
+      if (is_large) self%work = stored + dissipated
+      self%energy = max(self%energy, self%gross_work, abs(stored), dissipated)
+      if (.not. is_large) call note(self, energy_balance, abs(self%work - stored - dissipated), self%energy)
    end subroutine check_energy
 
    !> Record a residual if it is the largest of its kind; `scale` is its reference magnitude.

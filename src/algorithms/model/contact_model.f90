@@ -6,7 +6,7 @@
 !> gaps are along the radii of the hole, and tractions are per unit of its arc. On unequal intervals gaps are means, as
 !> displacements are.
 module mfv_contact_model
-   use mfv_body, only: body_type, gap_between, radial_gap_between, shape_matrix
+   use mfv_body, only: body_type, gap_between, radial_gap_between, shape_disk, shape_hole, shape_matrix
    use mfv_body_pair, only: body_pair_type, new_body_pair
    use mfv_circle, only: circle_intervals, kernel_fourier
    use mfv_compliance, only: compliance_type
@@ -409,7 +409,7 @@ contains
    end function force
 
    !> Resultant of the tractions on the lower body for a motion (mfv_motions): normal force down, tangential force to the right,
-   !> force/length; moment about the centre of rotation, counterclockwise, force.
+   !> force/length; moment about the centre of rotation (centre_height), counterclockwise, force.
    pure real(wp) function resultant(self, motion, pressure, shear)
       class(contact_model_type), intent(in) :: self
       integer, intent(in) :: motion
@@ -522,10 +522,10 @@ contains
       end do
    end function mean_gaps
 
-   !> Arms of the rotation of the upper body: about its centre if it is a circle, else about that of the lower one if that is, else
-   !> about the origin of x. Counterclockwise it lifts the right side and moves a surface below the centre to the right (eq. 4.24,
-   !> where M is in units of R and has its own signs). Circles roll: see rolling_arm. Arms of the bulk stresses: a uniform stress
-   !> sigma strains the surface of its body by sigma (kappa + 1)/(8 G), about the origin of x.
+   !> Arms of the rotation of the upper body about the centre of centre_height. Counterclockwise it lifts the right side and moves a
+   !> surface below the centre to the right (eq. 4.24, where M is in units of R and has its own signs). Circles roll: see
+   !> rolling_arm. Arms of the bulk stresses: a uniform stress sigma strains the surface of its body by sigma (kappa + 1)/(8 G),
+   !> about the origin of x.
    subroutine place_arms(self)
       class(contact_model_type), intent(inout) :: self
       integer :: n
@@ -552,16 +552,20 @@ contains
       end associate
    end subroutine place_arms
 
-   !> Height of the centre of rotation above the origin of x, length: negative for a disk below; 0 without a circle.
+   !> Height of the centre of rotation above the origin of x, length: of the disk (the upper one of two; negative for a disk below),
+   !> else of the hole; 0 without a circle. Of a disk in a hole it is the disk's centre whichever is above: forces and moment of the
+   !> pair are the same upside down.
    pure real(wp) function centre_height(self)
       class(contact_model_type), intent(in) :: self
 
       centre_height = 0.0_wp
-      if (self%scene%upper%circular()) then
-         centre_height = sign(self%scene%upper%radius, self%scene%upper%curvature())
-      else if (self%scene%lower%circular()) then
-         centre_height = -sign(self%scene%lower%radius, self%scene%lower%curvature())
-      end if
+      associate (lower => self%scene%lower, upper => self%scene%upper)
+         if (upper%circular() .and. .not. (upper%shape == shape_hole .and. lower%shape == shape_disk)) then
+            centre_height = sign(upper%radius, upper%curvature())
+         else if (lower%circular()) then
+            centre_height = -sign(lower%radius, lower%curvature())
+         end if
+      end associate
    end function centre_height
 
    !> Whether a rotation rolls the bodies on each other: circles, on each other or on a straight surface, with vertical normals.
@@ -620,7 +624,8 @@ contains
    end function rolling_error
 
    !> The arms with radial normals: where the normal is inclined, approach and shift have components along both directions; a
-   !> rotation only slides the surfaces. `side`: 1 if the lower body is the disk, -1 if it is the hole.
+   !> rotation, about the disk's centre, only slides the surfaces, by the disk's radius. `side`: 1 if the lower body is the disk, -1
+   !> if it is the hole.
    subroutine place_radial_arms(self)
       class(contact_model_type), intent(inout) :: self
       real(wp) :: side
@@ -632,7 +637,7 @@ contains
          self%tangential_arm(:, motion_approach) = side*sin(angle)
          self%tangential_arm(:, motion_shift) = cos(angle)
       end associate
-      self%tangential_arm(:, motion_rotation) = -side*self%scene%upper%radius
+      self%tangential_arm(:, motion_rotation) = self%centre_height()
    end subroutine place_radial_arms
 
    !> Default half-width of a mesh, length along the surface: that of the punch, of the profile, or of the contact that the closed

@@ -19,16 +19,20 @@ module mfv_contact_state
       integer, allocatable :: slip_direction(:)
       !> Memory of the friction law, shape (memory_size, nodes).
       real(wp), allocatable :: memory(:, :)
-      !> Work dissipated by friction so far, force (energy per unit thickness).
-      real(wp) :: dissipation = 0.0_wp
-      !> The same per unit of surface, force/length, shape (nodes).
+      !> Work dissipated by friction so far, force (energy per unit thickness); and its part in the cycles of blocks of wear that
+      !> are not computed.
+      real(wp) :: dissipation = 0.0_wp, skipped_dissipation = 0.0_wp
+      !> Work dissipated so far per unit of surface, force/length, shape (nodes).
       real(wp), allocatable :: friction_work(:)
       !> Depth worn off both surfaces together, length, shape (nodes).
       real(wp), allocatable :: worn(:)
+      !> Area worn off in blocks of cycles that change the pressures by more than the tolerance of the wear, length^2.
+      real(wp) :: coarsely_worn = 0.0_wp
    contains
       procedure :: set_status
       procedure :: copy_from
       procedure :: friction_point
+      procedure :: skip
       procedure :: widen
       procedure :: contact_nodes
       procedure :: stick_nodes
@@ -78,8 +82,10 @@ contains
       self%slip_direction = other%slip_direction
       self%memory = other%memory
       self%dissipation = other%dissipation
+      self%skipped_dissipation = other%skipped_dissipation
       self%friction_work = other%friction_work
       self%worn = other%worn
+      self%coarsely_worn = other%coarsely_worn
    end subroutine copy_from
 
    !> State of node `node` for a friction law, with the given fields and coefficients of friction.
@@ -93,6 +99,16 @@ contains
       point = friction_point_type(static, kinetic, fields%pressure(node), fields%shear(node), &
                                   fields%tangential(node) - fields%motion(motion_shift), self%memory(:, node))
    end function friction_point
+
+   !> Add the `work` of friction in cycles that are not computed, force/length, shape (nodes); `width`: of the nodes, length.
+   pure subroutine skip(self, width, work)
+      class(contact_state_type), intent(inout) :: self
+      real(wp), intent(in) :: width(:), work(:)
+
+      self%friction_work = self%friction_work + work
+      self%dissipation = self%dissipation + sum(width*work)
+      self%skipped_dissipation = self%skipped_dissipation + sum(width*work)
+   end subroutine skip
 
    !> Add `extra` open nodes at either end; the caller fills in their displacements.
    pure subroutine widen(self, extra)

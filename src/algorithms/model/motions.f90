@@ -70,10 +70,11 @@ module mfv_motions
                                    motion_type( &
                                    key='rotation', force_key='moment', force_name='moment', unit='radians', force_unit='force', &
                                    meaning='rotation of the upper body, counterclockwise, in radians', &
-                                   force_meaning='moment M of the upper on the lower body per unit thickness, counterclockwise', &
+                                   force_meaning='moment M of the upper on the lower body per unit thickness about the '// &
+                                   'centre of rotation, counterclockwise', &
                                    target='target of the rotation of the upper body about the same point, in place of moment', &
-            force_target='target of the moment M about the centre of the upper disk or hole, else of the lower one, else about '// &
-                                   'the origin of x; counterclockwise', &
+                   force_target='target of the moment M about the centre of the disk (the upper one of two), else of the hole, '// &
+                                   'else about the origin of x; counterclockwise', &
                           balance='moment_balance', balance_meaning='M - moment of the tractions', turns=.true., optional=.true.), &
                                    motion_type( &
                     key='lower_bulk_stress', force_key='lower_contraction', force_name='lower contraction', unit='force/length^2', &

@@ -22,7 +22,7 @@ module mfv_simulation
    use mfv_slip_zones, only: segment_start_type, slip_record_type
    use mfv_status, only: MFV_COMPLETE
    use mfv_straight, only: apply_directly
-   use mfv_wear_block, only: find_wear_block
+   use mfv_wear_block, only: find_wear_block, work_of_wear
    use mfv_strings, only: to_text
    implicit none
    private
@@ -249,8 +249,8 @@ contains
               self%contact%model%tangential
    end function wears
 
-   !> Wear the surfaces by the block of cycles that the present one begins, under constant loads, and skip the others. It is not
-   !> interrupted: a restart begins at the start of a load segment.
+   !> Wear the surfaces by the block of cycles that the present one begins, under constant loads, and skip the others, which
+   !> dissipate what wears the surfaces. It is not interrupted: a restart begins at the start of a load segment.
    subroutine apply_wear(self, step, before, segments, error)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
@@ -260,6 +260,7 @@ contains
       type(load_type) :: targets(motion_count)
       real(wp), allocatable :: depth(:)
       integer :: cycles, turns
+      logical :: is_coarse
 
       turns = step%turns()
       do
@@ -267,7 +268,7 @@ contains
          allocate (depth(self%contact%model%nodes()))
          call find_wear_block(self%contact, self%contact%state%friction_work - start%friction_work, &
                               most_worn_at_once(self, step%cycles - self%leg%number/turns + 1), &
-                              self%load(motion_approach)%control == control_force, cycles, depth)
+                              self%load(motion_approach)%control == control_force, cycles, depth, is_coarse)
          if (.not. self%contact%lengthens_for(depth > 0.0_wp)) exit
          deallocate (depth)
       end do
@@ -277,6 +278,8 @@ contains
       call begin_segment(self, targets, step, before, segments)
       call apply_segment(self, error=error)
       call self%contact%end_wear()
+      if (is_coarse) self%contact%state%coarsely_worn = self%contact%state%coarsely_worn + self%contact%model%force(depth)
+      call self%contact%state%skip(self%contact%model%width, work_of_wear(self%contact%model, depth)*(cycles - 1)/cycles)
       self%cycles_done = self%cycles_done + cycles - 1
       self%leg%number = self%leg%number + turns*(cycles - 1)
       self%cycles(self%cycle_count)%block = cycles

@@ -12,6 +12,7 @@
 !> only. The friction work per unit of surface gives s p. Nodes out of contact have the slip path of the nearest one in contact.
 module mfv_wear_block
    use mfv_compliance, only: block_wp
+   use mfv_contact_model, only: contact_model_type
    use mfv_contact_path, only: contact_path_type
    use mfv_kinds, only: wp
    use mfv_lapack, only: dgesv
@@ -20,7 +21,7 @@ module mfv_wear_block
    use mfv_wear, only: wear_archard
    implicit none
    private
-   public :: find_wear_block
+   public :: find_wear_block, work_of_wear
 
    !> The problem of a block: nodes near the contact, their softness k s per cycle, present pressure, gap without any pressure on
    !> them, arm and width, and the compliance between them; in terms of the modulus and the length of the mesh.
@@ -34,14 +35,16 @@ contains
 
    !> The number of cycles of a block, at most `remaining`, and the depth of their wear (length, shape (nodes)), from the friction
    !> work per unit of surface of its first cycle, whose end is the present state. `presses`: whether the normal force is given.
-   !> The contact may reach the end of the mesh: wear beyond it is missing.
-   subroutine find_wear_block(path, work, remaining, presses, cycles, depth)
+   !> The contact may reach the end of the mesh: wear beyond it is missing. `is_coarse`: the change is above the tolerance, in one
+   !> cycle or in a block of a given number of them.
+   subroutine find_wear_block(path, work, remaining, presses, cycles, depth, is_coarse)
       type(contact_path_type), intent(in) :: path
       real(wp), intent(in) :: work(:)
       integer, intent(in) :: remaining
       logical, intent(in) :: presses
       integer, intent(out) :: cycles
       real(wp), intent(out) :: depth(:)
+      logical, intent(out) :: is_coarse
       integer, parameter :: most_trials = 20
       real(wp), parameter :: safety = 0.9_wp, smallest = 0.1_wp
       type(problem_type) :: problem
@@ -50,6 +53,7 @@ contains
       integer :: trial, margin, n
 
       depth = 0.0_wp
+      is_coarse = .false.
       cycles = remaining
       margin = size(work)/8
       problem%presses = presses
@@ -72,7 +76,18 @@ contains
          end do
       end associate
       depth(problem%node) = cycles*problem%softness*pressure*path%model%length()
+      is_coarse = change > path%model%scene%wear%tolerance
    end subroutine find_wear_block
+
+   !> The work of friction per unit of surface that wears it by `depth`: force/length and length, shape (nodes).
+   pure function work_of_wear(model, depth) result(work)
+      type(contact_model_type), intent(in) :: model
+      real(wp), intent(in) :: depth(:)
+      real(wp) :: work(size(depth))
+
+      work = depth/model%scene%wear%coefficient
+      if (model%scene%wear%law == wear_archard) work = work*model%kinetic_friction
+   end function work_of_wear
 
    !> Change of the pressures over a block relative to the force, or, if it is larger, that of the worn area, twice its error,
    !> relative to all that is worn: narrow slip zones have little of the force, but all of the wear.

@@ -271,8 +271,10 @@ contains
       self%prefix = prefix
       call exchange_visible(self, state)
       call exchange_motions(self, state, motions(:motion_count)%optional)
+      call self%exchange('skipped_dissipation', state%skipped_dissipation, 'energy dissipated in cycles that are not computed')
       call self%exchange('friction_work', state%friction_work, 'energy dissipated per unit of surface')
       call self%exchange('worn', state%worn, 'depth worn off both surfaces')
+      call self%exchange('coarsely_worn', state%coarsely_worn, 'area worn off in blocks of cycles that are too large')
       call self%exchange('normal', state%fields%normal, 'separation of the surfaces by deformation and rotation')
       call self%exchange('tangential', state%fields%tangential, 'displacement of the lower surface to the right relative to '// &
                          'the upper one')

@@ -64,7 +64,7 @@ module mfv_result_fields
    !> Meanings of fields in several groups.
    character(*), parameter :: pressure_meaning = 'compressive normal traction p'
    character(*), parameter :: shear_meaning = 'shear traction tau on the lower body, positive to the right'
-   character(*), parameter :: dissipation_meaning = 'energy dissipated so far per unit thickness'
+   character(*), parameter :: dissipation_meaning = 'energy dissipated so far per unit thickness (with wear: by all cycles)'
    character(*), parameter :: contact_nodes_meaning = 'nodes in contact'
    character(*), parameter :: stick_nodes_meaning = 'stuck nodes'
    character(*), parameter :: nan_of_several = '; NaN with several patches'
