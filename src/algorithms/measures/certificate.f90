@@ -42,9 +42,9 @@ module mfv_certificate
                                   'jump of the tractions where statuses change', 'work of the loads - stored - dissipated energy', &
                                                  motions(motion_shift + 1:)%balance_meaning]
 
-   !> Gaps and works are differences, or products with differences, of lengths that exist without load: undeformed gaps and the
-   !> approach. Where they differ by round-off, as between two nodes beside a tip, displacements are at first not larger than it. Scales
-   !> are at least this part of these lengths, or of a force times them.
+   !> Gaps, and work through differences of them, have the round-off of lengths that exist without load: undeformed gaps and the
+   !> approach. Two nodes beside a tip can have gaps that differ by round-off; the first displacements are not larger than that.
+   !> Scales are at least this part of those lengths, or of a force times them.
    real(wp), parameter :: least_scale = 1.0e-6_wp
 
    type :: certificate_type
@@ -211,8 +211,8 @@ contains
    end function largest_or_nan
 
    !> Equalities and inequalities of gap and pressure. Before any contact gaps are compared with those of the undeformed bodies and
-   !> with the approach, also with that `before`, which flat faces at zero have come from; later at least with a part of those of the
-   !> nodes in contact (`least_scale`).
+   !> with the approach, also with that `before`, which flat faces at zero have come from; later with at least a part of those of
+   !> the nodes in contact (`least_scale`).
    subroutine check_normal_contact(self, model, before, state)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -331,7 +331,8 @@ contains
       if (is_large) self%work = stored + after%dissipation
       self%energy = max(self%energy, self%gross_work, abs(stored), after%dissipation)
       least = least_scale*abs(after%fields%force(motion_approach)*after%fields%motion(motion_approach))
-      if (.not. is_large) call note(self, energy_balance, abs(self%work - stored - after%dissipation), max(self%energy, least))
+      if (.not. is_large) &
+         call note(self, energy_balance, abs(self%work - stored - after%dissipation), max(self%energy, least))
    end subroutine check_energy
 
    !> Record a residual if it is the largest of its kind; `scale` is its reference magnitude.

@@ -139,8 +139,8 @@ module mfv_simulation
 
 contains
 
-   !> A simulation of a scene, at its start; MFV_INPUT_ERROR, its outcome, if the scene has a fault. `keep_history`: history_events, history_steps or history_none. `keep_states`:
-   !> states_reversals (default), states_steps or states_none.
+   !> A simulation of a scene, at its start. Its outcome is MFV_INPUT_ERROR if the scene has a fault. `keep_history`:
+   !> history_events, history_steps or history_none. `keep_states`: states_reversals (default), states_steps or states_none.
    function new_simulation(scene, keep_history, keep_states) result(self)
       type(scene_type), intent(in) :: scene
       integer, intent(in) :: keep_history
