@@ -139,7 +139,7 @@ contains
          contact%case%options = '--accuracy '//to_text(accuracy)
       end if
       if (present(suffix)) contact%case%result_path = with_suffix(contact%case%result_path, suffix)
-      call contact%begin()
+      call contact%begin(error)
    end subroutine read_contact
 
    !> The name of a file with a suffix before its extension.
@@ -160,7 +160,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       call read_case_text(text, source, contact%case, error, without_steps=.true.)
-      if (.not. allocated(error)) call contact%begin()
+      if (.not. allocated(error)) call contact%begin(error)
    end subroutine read_contact_text
 
    !> The contact of a scene that was built by calls. Error MFV_INPUT_ERROR.
@@ -170,14 +170,19 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       call draft%make_case(contact%case, error)
-      if (.not. allocated(error)) call contact%begin()
+      if (.not. allocated(error)) call contact%begin(error)
    end subroutine new_contact
 
-   !> The unloaded contact of the case.
-   subroutine begin(self)
+   !> The unloaded contact of the case. Error MFV_INPUT_ERROR: the scene cannot be modelled.
+   subroutine begin(self, error)
       class(contact_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
 
       self%simulation = new_simulation(self%case%scene, self%case%keep_history, self%case%keep_states)
+      if (self%simulation%outcome /= MFV_COMPLETE) then
+         call set_error(error, self%simulation%outcome, self%simulation%message)
+         return
+      end if
       call find_case_checksum(self%case, self%simulation%contact%model, self%scene)
       self%is_made = .true.
    end subroutine begin
@@ -287,6 +292,7 @@ contains
    subroutine refine(self, observer)
       class(contact_type), intent(inout) :: self
       class(observer_type), intent(inout), optional :: observer
+      type(error_type), allocatable :: error
       logical :: keep_restart, interrupted
 
       if (self%status() /= MFV_COMPLETE .or. .not. self%case%scene%mesh%refined) return
@@ -302,7 +308,7 @@ contains
       self%case%scene%mesh%refined = .false.
       keep_restart = self%simulation%keep_restart
       self%cache_type = cache_type()
-      call self%begin()
+      call self%begin(error)  ! also the outcome
       self%simulation%keep_restart = keep_restart
    end subroutine refine
 

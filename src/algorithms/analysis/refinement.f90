@@ -35,8 +35,8 @@ module mfv_refinement
 
 contains
 
-   !> Set the mesh of a scene to intervals that are small at the edges at the ends of its steps and reversals. Without contact the
-   !> mesh is unchanged. `interrupted`: `observer` stopped it; the mesh is unchanged.
+   !> Set the mesh of a scene to intervals that are small at the edges at the ends of its steps and reversals. Without contact, or
+   !> if the scene has a fault, the mesh is unchanged. `interrupted`: `observer` stopped it; the mesh is unchanged.
    subroutine refine_at_edges(scene, interrupted, observer)
       type(scene_type), intent(inout) :: scene
       logical, intent(out) :: interrupted
@@ -52,6 +52,7 @@ contains
       logical :: exceeded, is_last
 
       interrupted = .false.
+      if (scene%fault() /= '') return
       nodes = scene%mesh%nodes
       if (scene%mesh%nodes_by_accuracy .and. scene%method%accuracy > 0.0_wp) nodes = nodes_for_accuracy(scene%method%accuracy)
       if (present(observer)) watch%caller => observer

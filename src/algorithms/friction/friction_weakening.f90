@@ -130,13 +130,15 @@ contains
           point%memory(slipped) < self%distance*(1.0_wp - round_off)) room = self%distance - point%memory(slipped)
    end function room
 
-   !> Events: friction no longer decreases; a relaxing node satisfies the law again, (mu - mu_k) p above kinetic friction.
+   !> Events: friction no longer decreases; a relaxing node satisfies the law again, (mu - mu_k) p above kinetic friction. Up to
+   !> round-off it does where relaxation begins, so that a stress drop that is not needed ends there.
    pure subroutine find_events(self, status, here, there, events)
       class(weakening_law_type), intent(in) :: self
       integer, intent(in) :: status
       type(friction_point_type), intent(in) :: here, there
       type(friction_event_type), intent(out) :: events(most_events)
-      real(wp) :: fall, lawful, by_slip
+      real(wp), parameter :: round_off = 1.0e-10_wp
+      real(wp) :: fall, lawful, by_slip, slack
 
       if (.not. slips(status)) return
       call find_drop_events(self, status, here, there, events)
@@ -147,7 +149,9 @@ contains
       lawful = max(self%distance - here%memory(slipped), 0.0_wp)*fall
       by_slip = 0.0_wp
       if (lawful > 0.0_wp) by_slip = -fall*here%pressure
-      events(3) = friction_event_type(event_caught, slack=max(here%memory(over) - lawful*here%pressure, 0.0_wp), &
+      slack = here%memory(over) - lawful*here%pressure
+      if (slack <= round_off*here%static*here%pressure) slack = 0.0_wp
+      events(3) = friction_event_type(event_caught, slack=slack, &
                                       rate=-self%release_rate(here%memory), by_pressure=-lawful, by_motion=-by_slip)
    end subroutine find_events
 

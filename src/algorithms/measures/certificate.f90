@@ -42,6 +42,11 @@ module mfv_certificate
                                   'jump of the tractions where statuses change', 'work of the loads - stored - dissipated energy', &
                                                  motions(motion_shift + 1:)%balance_meaning]
 
+   !> Gaps, and work through differences of them, have the round-off of lengths that exist without load: undeformed gaps and the
+   !> approach. Two nodes beside a tip can have gaps that differ by round-off; the first displacements are not larger than that.
+   !> Scales are at least this part of those lengths, or of a force times them.
+   real(wp), parameter :: least_scale = 1.0e-6_wp
+
    type :: certificate_type
       !> Largest relative residuals over all increments, by kind.
       real(wp) :: residual(residual_count) = 0.0_wp
@@ -206,32 +211,35 @@ contains
    end function largest_or_nan
 
    !> Equalities and inequalities of gap and pressure. Before any contact gaps are compared with those of the undeformed bodies and
-   !> with the approach, also with that `before`, which flat faces at zero have come from.
+   !> with the approach, also with that `before`, which flat faces at zero have come from; later with at least a part of those of
+   !> the nodes in contact (`least_scale`).
    subroutine check_normal_contact(self, model, before, state)
       class(certificate_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: before
       type(contact_state_type), intent(in) :: state
-      real(wp) :: gap, closed_gap, open_gap, open_traction_size, negative_pressure, scale
+      real(wp) :: gap, closed_gap, open_gap, open_traction_size, negative_pressure, scale, undeformed
       integer :: i
 
       closed_gap = 0.0_wp
       open_gap = 0.0_wp
       open_traction_size = 0.0_wp
       negative_pressure = 0.0_wp
+      undeformed = abs(state%fields%motion(motion_approach))
       do i = 1, size(state%status)
          gap = model%initial_gap(i) - state%fields%motion(motion_approach) + state%fields%normal(i)
          if (state%status(i) /= node_open) then
             closed_gap = largest_or_nan(closed_gap, gap)
+            undeformed = max(undeformed, abs(model%initial_gap(i)))
             negative_pressure = max(negative_pressure, -state%fields%pressure(i))
          else
             if (model%can_touch(i)) open_gap = max(open_gap, -gap)
             open_traction_size = max(open_traction_size, abs(state%fields%pressure(i)) + abs(state%fields%shear(i)))
          end if
       end do
-      scale = self%normal
-      if (.not. scale > 0.0_wp) scale = max(maxval(abs(model%initial_gap)), abs(before%motion(motion_approach)), &
-                                            abs(state%fields%motion(motion_approach)))
+      scale = max(self%normal, least_scale*undeformed)
+      if (.not. self%normal > 0.0_wp) scale = max(maxval(abs(model%initial_gap)), abs(before%motion(motion_approach)), &
+                                                  abs(state%fields%motion(motion_approach)))
       call note(self, contact_gap, closed_gap, scale)
       call note(self, gap_sign, open_gap, scale)
       call note(self, open_traction, open_traction_size, self%traction_scale)
@@ -299,7 +307,7 @@ contains
       type(contact_fields_type), intent(in) :: before
       type(contact_state_type), intent(in) :: after
       logical, intent(in) :: is_large
-      real(wp) :: stored, dissipated, works(motion_count), own(motion_count)
+      real(wp) :: stored, dissipated, works(motion_count), own(motion_count), least
       integer :: i
 
       associate (now => after%fields)
@@ -323,7 +331,8 @@ contains
       dissipated = after%dissipation - after%skipped_dissipation
       if (is_large) self%work = stored + dissipated
       self%energy = max(self%energy, self%gross_work, abs(stored), dissipated)
-      if (.not. is_large) call note(self, energy_balance, abs(self%work - stored - dissipated), self%energy)
+      least = least_scale*abs(after%fields%force(motion_approach)*after%fields%motion(motion_approach))
+      if (.not. is_large) call note(self, energy_balance, abs(self%work - stored - dissipated), max(self%energy, least))
    end subroutine check_energy
 
    !> Record a residual if it is the largest of its kind; `scale` is its reference magnitude.

@@ -66,6 +66,7 @@ module mfv_contact_model
       procedure :: length
       procedure :: unit_of_arm
       procedure :: gap
+      procedure :: gap_terms
       procedure :: relative_displacements
       procedure :: displace
       procedure :: has_rigid_parts
@@ -312,6 +313,19 @@ contains
 
       gap = self%initial_gap - fields%motion(motion_approach) + fields%normal
    end function gap
+
+   !> Sum of the magnitudes of the lengths that make up the gap of every node, shape (nodes), length: the surfaces of both bodies,
+   !> approach and displacement. Round-off of a gap is relative to it.
+   function gap_terms(self, fields) result(terms)
+      class(contact_model_type), intent(in) :: self
+      type(contact_fields_type), intent(in) :: fields
+      real(wp) :: terms(self%compliance%nodes)
+
+      associate (scene => self%scene)
+         terms = abs(scene%lower%recess(self%x, scene%mesh%parabolic)) + abs(scene%upper%recess(self%x, scene%mesh%parabolic))
+      end associate
+      terms = terms + abs(self%initial_gap) + abs(fields%motion(motion_approach)) + abs(fields%normal)
+   end function gap_terms
 
    !> Relative displacements of the surfaces by deformation and rigid motions, as in contact_fields_type, from the tractions and
    !> motions in `fields`; shape (nodes), length.

@@ -12,7 +12,7 @@ module mfv_scene
    use mfv_wear, only: wear_type
    implicit none
    private
-   public :: scene_type, mesh_request_type, step_type, method_type, control_keep, control_force, control_displacement, &
+   public :: scene_type, both_rigid, mesh_request_type, step_type, method_type, control_keep, control_force, control_displacement, &
              most_cycles, algorithm_mfv, algorithm_conventional, stepping_event, stepping_nominal, stepping_leap, stepping_auto, &
              integration_second_order, integration_explicit, solver_auto, solver_dgesv, solver_reduced, solver_fft, &
              algorithm_names, stepping_names, integration_names, solver_names, friction_tolerance_part
@@ -106,6 +106,9 @@ module mfv_scene
       logical :: radial = .false.
    end type mesh_request_type
 
+   !> What is wrong with a scene of two rigid bodies, for messages.
+   character(*), parameter :: both_rigid = 'both bodies are rigid; at least one must be elastic'
+
    type :: scene_type
       character(:), allocatable :: title
       integer :: plane = plane_strain
@@ -118,6 +121,7 @@ module mfv_scene
       type(method_type) :: method
       type(step_type), allocatable :: steps(:)
    contains
+      procedure :: fault
       procedure :: tangential
       procedure :: moves
       procedure :: modulus
@@ -184,6 +188,15 @@ contains
       if (self%accuracy > 0.0_wp) tolerance = max(friction_tolerance_part*self%accuracy, least)
       if (self%friction_tolerance > 0.0_wp) tolerance = self%friction_tolerance
    end function allowed_in_friction
+
+   !> Why a scene cannot be modelled at all, empty if it can. (The readers check much more.)
+   pure function fault(self)
+      class(scene_type), intent(in) :: self
+      character(:), allocatable :: fault
+
+      fault = ''
+      if (self%lower%rigid .and. self%upper%rigid) fault = both_rigid
+   end function fault
 
    !> Whether the scene requires the tangential problem: a friction law, and a step in which it acts. A scene without steps may get
    !> such steps later.

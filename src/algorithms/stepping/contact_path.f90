@@ -504,13 +504,16 @@ contains
       end if
    end subroutine hold_motion
 
-   !> Force control without contact: move the upper body, without load, until its nearest nodes touch.
+   !> Force control without contact: move the upper body, without load, until its nearest nodes touch. Together touch nodes whose
+   !> gaps agree within the round-off of the largest gap, and to a part `alike`: the gaps beside a flat tip differ by much less than
+   !> that round-off, and the positions of graded meshes are less accurate than their gaps are small.
    subroutine close_nearest(self, segment, iteration)
       class(contact_path_type), intent(inout) :: self
       type(segment_type), intent(in) :: segment
       type(iteration_type), intent(inout) :: iteration
-      real(wp), dimension(self%model%nodes()) :: gap, normal, tangential, round_off
-      real(wp) :: smallest
+      real(wp), parameter :: alike = 1.0e-8_wp
+      real(wp), dimension(self%model%nodes()) :: gap, terms, normal, tangential
+      real(wp) :: smallest, round_off
       integer :: status(self%model%nodes())
       logical :: touching(self%model%nodes())
 
@@ -524,7 +527,8 @@ contains
       call refresh_derivatives(self)
       smallest = minval(gap, mask=self%model%can_touch)
       round_off = 8*epsilon(1.0_wp)*max(maxval(abs(self%model%initial_gap)), abs(self%state%fields%motion(motion_approach)))
-      touching = self%model%can_touch .and. gap - smallest <= round_off
+      terms = self%model%gap_terms(self%state%fields)
+      touching = self%model%can_touch .and. gap - smallest <= min(round_off, alike*terms)
       status = status_after(event_close, node_open, segment%friction .and. self%model%tangential, 0, &
                             self%holding(self%state%fields%shear))
       call note_change(iteration, event_close, touching)

@@ -130,7 +130,7 @@ contains
       type(increment_type) :: predicted
       type(contact_fields_type) :: guess
       real(wp) :: length, error, change, tolerance
-      logical :: agrees, accepted, touched
+      logical :: agrees, accepted, touched, misled, law_sticks
       integer :: attempt
 
       if (path%model%scene%method%integration == integration_explicit .and. &
@@ -143,6 +143,7 @@ contains
       if (increment%step <= shortest_step(path) .and. .not. touched) return
       if (.not. path%trial > 0.0_wp) path%trial = first_trial
       tolerance = path%model%scene%method%allowed_in_friction()*part_of_segment(path, increment%response%rate)
+      law_sticks = path%model%scene%friction%law%sticks
       predicted = increment
       length = min(left, path%trial)
       do attempt = 1, most_attempts
@@ -156,16 +157,34 @@ contains
          change = most_growth
          if (error > 0.0_wp) change = min(most_growth, safety*sqrt(tolerance/error))
          if (.not. agrees) change = min(change, 0.25_wp)
-         accepted = agrees .and. error <= tolerance
+         ! The tangents allow a step: an event before any is due to the length.
+         misled = agrees .and. law_sticks .and. increment%step <= shortest_step(path) .and. .not. (touched .or. length < shortest)
+         if (misled) change = least_shrink
+         accepted = agrees .and. error <= tolerance .and. .not. misled
          if (accepted .or. length < shortest) exit
          length = length*max(change, least_shrink)
       end do
       increment%diverges = .not. accepted
       if (increment%step <= shortest_step(path)) return
+      if (was_cut_too_short(increment, length)) then
+         path%trial = max(increment%step*change, 10*shortest)
+         return
+      end if
       ! An increment cut short by an event is no reason for a shorter next one.
       length = max(length, increment%step)*max(change, least_shrink)
       path%trial = max(length, merge(path%trial, 10*shortest, attempt == 1))
    end subroutine integrate_friction
+
+   !> Whether an increment of the trial length `length` was shortened by a violation that, with the rates of the shorter one, is far
+   !> beyond its end. Friction over the longer one differed too much: others of this length would end too early again and again.
+   pure logical function was_cut_too_short(increment, length)
+      type(increment_type), intent(in) :: increment
+      real(wp), intent(in) :: length
+      real(wp), parameter :: far = 2.0_wp
+
+      was_cut_too_short = .not. increment%ends_in_event .and. &
+                          min(length, minval(increment%violations%step)) > far*increment%step
+   end function was_cut_too_short
 
    !> Friction lines that are right at the end of the increment; a violation shortens it. `agrees`: whether they were found. The
    !> rates are those of the straight line from start to end.

@@ -20,7 +20,7 @@ module mfv_simulation
    use mfv_observer, only: observer_type
    use mfv_scene
    use mfv_slip_zones, only: segment_start_type, slip_record_type
-   use mfv_status, only: MFV_COMPLETE
+   use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR
    use mfv_straight, only: apply_directly
    use mfv_wear_block, only: find_wear_block, work_of_wear
    use mfv_strings, only: to_text
@@ -139,14 +139,20 @@ module mfv_simulation
 
 contains
 
-   !> A simulation of a valid scene, at its start. `keep_history`: history_events, history_steps or history_none. `keep_states`:
-   !> states_reversals (default), states_steps or states_none.
+   !> A simulation of a scene, at its start. Its outcome is MFV_INPUT_ERROR if the scene has a fault. `keep_history`:
+   !> history_events, history_steps or history_none. `keep_states`: states_reversals (default), states_steps or states_none.
    function new_simulation(scene, keep_history, keep_states) result(self)
       type(scene_type), intent(in) :: scene
       integer, intent(in) :: keep_history
       integer, intent(in), optional :: keep_states
       type(simulation_type) :: self
 
+      self%message = scene%fault()
+      if (self%message /= '') then
+         self%outcome = MFV_INPUT_ERROR
+         self%contact%model%scene = scene
+         return
+      end if
       call new_contact_path(new_contact_model(scene), keep_history == history_events, self%contact)
       self%keep_history = keep_history
       if (present(keep_states)) self%keep_states = keep_states

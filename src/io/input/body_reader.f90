@@ -9,7 +9,7 @@ module mfv_body_reader
    use mfv_matrix_file, only: read_matrix_body
    use mfv_profile, only: trace_type
    use mfv_profile_file, only: read_profile
-   use mfv_scene, only: scene_type
+   use mfv_scene, only: both_rigid, scene_type
    use mfv_scene_indenter, only: default_datum, touches_everywhere
    use mfv_strings, only: has_word, list_of_words, string_type, to_text
    implicit none
@@ -34,7 +34,7 @@ contains
          if (allocated(error)) return
       end do
       if (reader%logical_value('body', 1, 'rigid') .and. reader%logical_value('body', 2, 'rigid')) then
-         call reader%complain('body', 2, 'rigid', 'both bodies are rigid; at least one must be elastic', error)
+         call reader%complain('body', 2, 'rigid', both_rigid, error)
       else if (reader%text_value('body', 2, 'shape') == 'matrix') then
          call reader%complain('body', 2, 'shape', 'a matrix must be the first body, the lower one', error)
       else if (reader%text_value('body', 1, 'shape') == 'matrix' .and. .not. reader%logical_value('body', 2, 'rigid')) then
