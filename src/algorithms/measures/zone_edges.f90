@@ -369,10 +369,26 @@ contains
       if (.not. model%compliance%elastic_block(block_wt)) samples%is_regular = has_known_error(model, last, samples%number)
       edge = model%arc(last) + side*model%width(last)*distance_of_lack(samples, power)
       error = model%width(last)*max(uncertainty(straightened(samples, power)), least_stick_error)
+      call correct_by_slip(edge, error)
       if (stick_zones_can_grow(model)) error = max(error, model%width(last)*merge(error_if_unknown, error_if_grown, &
                                                                                   abs(patch_end - last) < 2))
 
    contains
+
+      !> Behind an older stick zone that ended nearby, the remaining friction vanishes twice within a few intervals: if the slip
+      !> disagrees with the traction, it locates the edge.
+      subroutine correct_by_slip(edge, error)
+         real(wp), intent(inout) :: edge, error
+         real(wp), parameter :: agreement = 0.35_wp
+         real(wp) :: by_slip
+
+         if (next == patch_end .or. next + side < patch%first .or. next + side > patch%last) return
+         if (stick_zones_can_grow(model)) return
+         by_slip = edge_by_slip(model, state, next, side, edge)
+         if (abs(by_slip - edge) <= agreement*model%width(last)) return
+         error = max(error, min(abs(by_slip - edge), error_if_unknown*model%width(last)))
+         edge = by_slip
+      end subroutine correct_by_slip
 
       !> Whether a sticking node is at its friction limit within tolerance.
       pure logical function at_its_limit(node)
