@@ -35,7 +35,7 @@ module mfv_run_help
       '  --accuracy   allowed error of the tractions and of the dissipation, such as 1e-3, in place of', &
       '               accuracy in &solver: large increments where they cost less than events', &
       '  --estimate   also solve the case on coarser meshes, for error bars of half-width, stick ratio,', &
-      '               peak tractions and dissipation; takes about twice the time', &
+      '               peak tractions, dissipation and largest tension; takes about twice the time', &
       '  --sensitivity  solve the case once more with all coefficients of friction times 1 + 1e-12,', &
       '               and print by how much tractions, dissipation and stick ratio change: static and', &
       '               kinetic friction can be chaotic', &

@@ -51,6 +51,7 @@ module mfv_interior
       procedure :: middle
       procedure :: contains_point
       procedure :: centre
+      procedure :: kinks
       procedure :: knots
       procedure :: point_at
       procedure :: is_sheared
@@ -282,6 +283,36 @@ contains
          end do
       end associate
    end function zone_edges
+
+   !> Places where the slope of the shear traction changes most, and their neighbours, arc lengths from the origin of x,
+   !> ascending: edges of former zones, which are not among the edges but where the tension has cusps.
+   function kinks(self) result(places)
+      class(interior_type), intent(in) :: self
+      real(wp), allocatable :: places(:)
+      integer, parameter :: most = 12, beside = 2
+      real(wp), dimension(size(self%elements%from)) :: length, slope
+      real(wp) :: change(size(self%elements%from) - 1)
+      logical :: is_place(size(self%elements%from))
+      integer :: i, n, number
+
+      n = size(length)
+      allocate (places(0))
+      if (n < 2) return
+      associate (elements => self%elements)
+         length = elements%to - elements%from
+         slope = aimag(elements%last - elements%first)/length
+         change = 0.0_wp
+         where (.not. elements%from(2:) > elements%to(:n - 1)) change = abs(slope(2:) - slope(:n - 1))*(length(2:) + length(:n - 1))
+         is_place = .false.
+         do number = 1, most
+            i = maxloc(change, dim=1)
+            if (.not. change(i) > 0.0_wp) exit
+            is_place([max(i - beside, 1), i, min(i + beside, n - 1)]) = .true.
+            change(max(i - beside, 1):min(i + beside, n - 1)) = 0.0_wp
+         end do
+         places = self%length*pack(elements%to, is_place)
+      end associate
+   end function kinks
 
    !> Ends of the elements with linear tractions, arc lengths from the origin of x.
    pure function knots(self)

@@ -4,6 +4,7 @@ module mfv_stress_search
    use mfv_interior, only: interior_type, von_mises_stress
    use mfv_kinds, only: pi, wp
    use mfv_minimum, only: minimum_near, objective_type
+   use mfv_surface_tractions, only: merged
    implicit none
    private
    public :: largest_type, largest_von_mises, largest_tension
@@ -101,8 +102,8 @@ contains
       largest = largest_type(value, point(1), point(2))
    end function largest_tension
 
-   !> Candidate points for the largest tension, ascending: zone edges, some knots between them, and points beside the contact
-   !> at increasing distances.
+   !> Candidate points for the largest tension, ascending: zone edges, some points between them, kinks of the shear, and points
+   !> beside the contact at increasing distances.
    function candidates(interior) result(places)
       type(interior_type), intent(in) :: interior
       real(wp), allocatable :: places(:)
@@ -111,7 +112,8 @@ contains
       real(wp) :: farthest, nearest
       integer :: i
 
-      inside = interior%zone_edges(most_between=16)
+      inside = merged(interior%zone_edges(most_between=16), interior%kinks())
+      inside = pack(inside, [.true., inside(2:) > inside(:size(inside) - 1)])
       nearest = 1.0e-3_wp*interior%half_width()
       farthest = 4.0_wp*interior%half_width()
       if (interior%body%circular()) farthest = max(farthest, pi*interior%body%radius)

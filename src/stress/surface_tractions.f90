@@ -13,7 +13,7 @@ module mfv_surface_tractions
    use mfv_lapack, only: dgesv
    implicit none
    private
-   public :: zone_list_type, traction_elements_type, find_traction_elements, root_shift
+   public :: zone_list_type, traction_elements_type, find_traction_elements, merged, root_shift
 
    !> Edges, arc lengths, left one first; shapes (2, zones). At a sharp edge the pressure does not vanish: the end of a body's
    !> surface. `beta`: Dundurs' parameter, 0 without coupling. `turn`: angle by which the normals turn per arc length, radians per

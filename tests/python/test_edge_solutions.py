@@ -124,3 +124,53 @@ def test_edges_and_tension_with_full_coupling() -> None:
     print(errors)
     assert errors[101][0] < 0.1 and errors[201][0] < 0.03 and errors[401][0] < 0.01
     assert errors[101][1] < 0.015 and errors[201][1] < 2e-3 and errors[401][1] < 5e-4
+
+
+def alike(nodes: int, steps: list[mfv.Step]) -> mfv.Result:
+    """A cylinder of radius 10 on a half-plane of the same material, mu = 0.5, without coupling."""
+    alloy = {"youngs_modulus": 70000.0, "poisson_ratio": 0.3}
+    bodies = mfv.Body.half_plane(**alloy), mfv.Body.disk(10.0, **alloy)
+    mesh, friction = mfv.Mesh(nodes=nodes), mfv.Friction.coulomb(0.5)
+    return mfv.Scene(*bodies, coupling="none", mesh=mesh, friction=friction, steps=steps).run(check=True)
+
+
+def test_largest_tension_at_the_edge_of_a_former_contact() -> None:
+    """Pressed further with dQ/dP < mu all sticks: the tension has a cusp where contact ended before (superposed ellipses)."""
+    mu, force, shear, slope = 0.5, (100.0, 110.0), 30.0, -0.4
+    modulus = 70000.0 / (1.0 - 0.3**2) / 2.0
+    first, second = (math.sqrt(4.0 * p * 10.0 / (math.pi * modulus)) for p in force)
+    stuck = first * math.sqrt(1.0 - shear / mu / force[0])
+    # sigma_xx at x = -first under the shear sqrt(a^2 - x^2): 2 (|x| - sqrt(x^2 - a^2)) beside it, 2 |x| below it, so that the last
+    # increment adds none.
+    exact = modulus / 20.0 * (2.0 * mu * math.sqrt(first**2 - stuck**2) - math.sqrt(second**2 - first**2))
+    errors = {}
+    for nodes in (101, 201, 801):
+        result = alike(
+            nodes,
+            [
+                mfv.Step(normal_force=force[0], friction=False),
+                mfv.Step(tangential_force=shear),
+                mfv.Step(normal_force=force[1], tangential_force=shear + slope * (force[1] - force[0])),
+            ],
+        )
+        x = np.linspace(-1.3, 1.3, 4001) * second
+        seen = mfv.stress.stress(result, x, 0.0 * x).values["sigma_xx"].max()
+        assert result.observables.lower_tension > 0.999 * seen, nodes
+        errors[nodes] = result.observables.lower_tension / exact - 1.0
+    print(exact, errors)
+    assert abs(errors[101]) < 0.15 and abs(errors[201]) < 0.04 and abs(errors[801]) < 0.025
+
+
+def test_stick_ratio_after_unequal_reversals() -> None:
+    """The stick zone of the last half-cycle, not that of first loading beside it: sqrt(1 - range of Q/(2 mu P)) (Mindlin, Deresiewicz)."""
+    errors = []
+    for largest in (15.0, 25.0, 40.0):
+        for ratio in np.arange(-0.95, 0.45, 0.1):
+            steps = [mfv.Step(normal_force=100.0, friction=False), mfv.Step(tangential_force=largest)]
+            result = alike(101, [*steps, mfv.Step(tangential_force=float(ratio) * largest, cycles=2)])
+            exact = math.sqrt(1.0 - (1.0 - ratio) * largest / (2.0 * 0.5 * 100.0))
+            for name in ("reversal", "return"):
+                seen = result.observables[f"stick_ratio_{name}"]
+                errors.append(abs(seen - exact) * 0.5 * result.summary.contact_nodes)  # in intervals at either edge
+    print(max(errors), np.median(errors))
+    assert max(errors) < 0.4 and np.median(errors) < 0.1

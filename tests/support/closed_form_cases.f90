@@ -69,6 +69,9 @@ contains
          truth(quantity_peak_shear) = mu*truth(quantity_peak_pressure)*sqrt(shear_force/(mu*force))
          truth(quantity_dissipation) = mindlin_dissipation(shear_force, force, half_width, length*radius, mu) &
                                        *merge(1.25_wp, 0.25_wp, modulo(i, kinds) == kind_cycle)
+         ! The sum of both shear tractions of Mindlin behind the contact: 2 mu p0 (x - sqrt(x^2 - a^2))/a of each (Johnson 1985,
+         ! section 7.1), at x = a.
+         truth(quantity_lower_tension) = 2.0_wp*truth(quantity_peak_shear)
       case default
          call press(scene, force, .true.)
          truth(quantity_stick_ratio) = spence_stick_ratio(mu, scene%dundurs_beta())

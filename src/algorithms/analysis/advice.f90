@@ -1,7 +1,7 @@
 !> Advice: number of nodes and linear solver for a given error. Pairs of coarse meshes of the scene, of m and 3 m intervals
-!> with common nodes, give the constants c of the error laws c/nodes^order of the tractions (l2 norm over the nodes) and of
-!> the dissipation. Half-width and stick ratio are uncertain by the interval; the dissipation also depends on the width of the
-!> slip zones (mfv_slip_zones). Solver costs follow from laws with measured constants.
+!> with common nodes, give the constants c of the error laws c/nodes^order of the tractions (l2 norm over the nodes), of the
+!> half-width and the stick ratio between nodes and of the dissipation. It also depends on the width of the slip zones
+!> (mfv_slip_zones), and edges are uncertain by a part of an interval. Solver costs follow from laws with measured constants.
 module mfv_advice
    use mfv_discretisation_error
    use mfv_error_bar, only: quantity_count, quantity_half_width, quantity_stick_ratio
@@ -25,8 +25,7 @@ module mfv_advice
                          advice_dissipation = 5, advice_count = 5
    character(*), parameter :: advice_names(advice_count) = [character(11) :: 'pressure', 'shear', 'half_width', 'stick_ratio', &
                                                                                                                       'dissipation']
-   !> Orders of convergence (docs/verification.md), and safety factors on errors from pairs of meshes and on half an interval
-   !> at each edge.
+   !> Orders of convergence (docs/verification.md), and safety factors.
    real(wp), parameter :: order(advice_count) = [1.0_wp, 1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp]
    real(wp), parameter :: safety(advice_count) = [2.0_wp, 2.0_wp, 1.4_wp, 1.4_wp, 2.0_wp]
    !> Safety factor on the error by the width of slip zones: an upper bound, but from coarse meshes.
@@ -36,7 +35,7 @@ module mfv_advice
    !> Approximate numbers of nodes in contact on the coarse meshes.
    integer, parameter :: pair_nodes(8) = [13, 15, 17, 19, 21, 23, 25, 27]
    !> Nodes in contact that the pilot mesh needs; and the minimum for any mesh.
-   integer, parameter :: fewest_pilot_nodes = 8, fewest_nodes = 10
+   integer, parameter :: fewest_pilot_nodes = 8, fewest_nodes = 30
 
    !> Relative residual of an iterative solver over the given error; at least the default.
    real(wp), parameter :: tolerance_part = 1.0e-3_wp
@@ -243,7 +242,7 @@ contains
    subroutine add_pair(law, coarse, fine)
       type(law_type), intent(inout) :: law
       type(simulation_type), intent(in) :: coarse, fine
-      real(wp) :: difference(advice_count)
+      real(wp) :: difference(advice_count), on_coarse(quantity_count), on_fine(quantity_count)
       integer, allocatable :: place(:)
       integer :: nodes
 
@@ -251,10 +250,14 @@ contains
       associate (on => coarse%contact%model, over => fine%contact%model, a => coarse%contact%state, b => fine%contact%state)
          place = nint((on%arc - over%arc(1))/over%interval()) + 1
          difference = 0.0_wp
+         on_coarse = quantities_of(coarse)
+         on_fine = quantities_of(fine)
          difference(advice_pressure) = distance(a%fields%pressure, b%fields%pressure, place)
+         difference(advice_half_width) = abs(on_coarse(quantity_half_width)/on_fine(quantity_half_width) - 1.0_wp)
          law%known([advice_pressure, advice_half_width]) = .true.
          if (on%tangential) then
             law%known(advice_stick_ratio) = .true.
+            difference(advice_stick_ratio) = abs(on_coarse(quantity_stick_ratio) - on_fine(quantity_stick_ratio))
             law%known(advice_shear) = any(abs(b%fields%shear) > 0.0_wp)
             law%known(advice_dissipation) = fine%slip%work > 0.0_wp
             difference(advice_shear) = distance(a%fields%shear, b%fields%shear, place)
@@ -285,7 +288,7 @@ contains
       if (norm2(there) > 0.0_wp) distance = norm2(coarse - there)/norm2(there)
    end function distance
 
-   !> Half-width and stick ratio are uncertain by half an interval at each edge.
+   !> Edges are uncertain by a part of an interval.
    subroutine add_interval_laws(law, fine)
       type(law_type), intent(inout) :: law
       type(simulation_type), intent(in) :: fine
@@ -295,8 +298,10 @@ contains
       allowances = interval_allowances(fine)
       values = quantities_of(fine)
       nodes = fine%contact%state%contact_nodes()
-      law%squares(advice_half_width) = (nodes*allowances(quantity_half_width)/max(values(quantity_half_width), tiny(1.0_wp)))**2
-      law%squares(advice_stick_ratio) = (nodes*allowances(quantity_stick_ratio))**2
+      associate (half_width => law%squares(advice_half_width), stick_ratio => law%squares(advice_stick_ratio))
+         half_width = max(half_width, (nodes*allowances(quantity_half_width)/max(values(quantity_half_width), tiny(1.0_wp)))**2)
+         stick_ratio = max(stick_ratio, (nodes*allowances(quantity_stick_ratio))**2)
+      end associate
    end subroutine add_interval_laws
 
    !> Number of nodes from the error laws.

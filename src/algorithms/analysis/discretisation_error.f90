@@ -1,6 +1,7 @@
-!> Discretisation error of a result: the scene is solved again on coarser meshes; half-width, stick ratio, peak tractions and
-!> dissipation get error bars (mfv_error_bar).
+!> Discretisation error of a result: the scene is solved again on coarser meshes; half-width and stick ratio between nodes,
+!> peak tractions, dissipation and the largest tensions get error bars (mfv_error_bar).
 module mfv_discretisation_error
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use mfv_body, only: body_type, shape_matrix
    use mfv_circle, only: kernel_fourier
    use mfv_compliance, only: block_wt
@@ -8,23 +9,29 @@ module mfv_discretisation_error
    use mfv_error_bar
    use mfv_friction, only: friction_coefficient_type
    use mfv_kinds, only: pi, wp
-   use mfv_node_status, only: holds, in_contact
+   use mfv_node_status, only: holds
+   use mfv_observables, only: observable_count, observable_place, observables_of
    use mfv_observer, only: observer_type, relay_type
    use mfv_scene, only: scene_type
    use mfv_simulation, only: history_none, new_simulation, simulation_type, states_steps
    use mfv_slip_zones, only: contact_interval
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
-   use mfv_zone_edges, only: ends_with_body, zone_type, zones_of
+   use mfv_zone_edges, only: find_patches, largest_shear, patch_type, pressing_shears
    implicit none
    private
-   public :: estimate_error, coarser_scene, scene_on_mesh, fix_cycles, nearest_mesh, quantities_of, interval_allowances, &
-             has_coarser_meshes
+   public :: estimate_error, coarser_scene, scene_on_mesh, fix_cycles, nearest_mesh, quantity_names, quantities_of, &
+             interval_allowances, has_coarser_meshes
 
    !> Ratios of fine to coarse numbers of intervals: spread, so that edges lie in different places of an interval.
    real(wp), parameter :: coarsening(3) = [1.4_wp, 1.7_wp, 2.0_wp]
    !> Minimum of nodes in contact on the coarsest mesh.
    integer, parameter :: fewest_contact_nodes = 5
+   !> The observables that get error bars, in the order of the quantities. Of several patches the half-width is half their
+   !> total length.
+   character(*), parameter :: quantity_names(quantity_count) = &
+                              [character(18) :: 'contact_half_width', 'stick_ratio', 'peak_pressure', 'peak_shear', 'dissipation', &
+                                                                                                  'lower_tension', 'upper_tension']
 
 contains
 
@@ -57,8 +64,10 @@ contains
                 .not. is_there(simulation%contact%model, quantity, values(quantity, :))) cycle
             if (is_resolved(simulation, quantity)) then
                estimate%bar(quantity) = new_error_bar(nodes, values(quantity, :), allowances(quantity, :), &
-                                                      any(quantity == [quantity_half_width, quantity_stick_ratio]), &
-                                                      all(quantity /= [quantity_peak_pressure, quantity_peak_shear]))
+                                                      all(quantity /= [quantity_peak_pressure, quantity_peak_shear, &
+                                                                       quantity_dissipation]), &
+                                                      any(quantity == [quantity_half_width, quantity_stick_ratio, &
+                                                                       quantity_dissipation]))
             else
                estimate%bar(quantity) = unresolved_bar(values(quantity, :))
             end if
@@ -76,19 +85,21 @@ contains
       select case (quantity)
       case (quantity_dissipation)
          is_resolved = .not. simulation%slip%is_coarse()
-      case (quantity_stick_ratio, quantity_peak_shear)
+      case (quantity_stick_ratio, quantity_peak_shear, quantity_lower_tension, quantity_upper_tension)
          is_resolved = .not. simulation%slip%is_coarse_now(contact_interval(simulation%contact%model, &
                                                                             simulation%contact%state))
       end select
    end function is_resolved
 
-   !> Whether a quantity is modelled and is not zero on all meshes.
+   !> Whether a quantity is modelled on all meshes and is not zero on all of them.
    pure logical function is_there(model, quantity, values)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: quantity
       real(wp), intent(in) :: values(:)
 
-      is_there = model%tangential .or. any(quantity == [quantity_half_width, quantity_peak_pressure])
+      is_there = .not. any(ieee_is_nan(values))
+      if (any(quantity == [quantity_stick_ratio, quantity_peak_shear, quantity_dissipation])) &
+         is_there = is_there .and. model%tangential
       if (quantity == quantity_stick_ratio) return
       is_there = is_there .and. any(abs(values) > 0.0_wp)
    end function is_there
@@ -280,59 +291,46 @@ contains
       coefficient%value = means
    end subroutine average
 
-   !> Half-width (length), stick ratio, peak pressure, peak shear traction (force/length^2) and dissipation (force) of the
-   !> present state.
+   !> The quantities at the present state of a simulation, with units as observables; NaN if not available.
    function quantities_of(simulation) result(values)
       type(simulation_type), intent(in) :: simulation
       real(wp) :: values(quantity_count)
+      real(wp) :: all_values(observable_count)
+      integer :: quantity
 
-      associate (state => simulation%contact%state, model => simulation%contact%model)
-         values(quantity_half_width) = 0.5_wp*model%interval()*model%intervals(in_contact(state%status))
-         values(quantity_stick_ratio) = model%intervals(holds(state%status))/ &
-                                        max(model%intervals(in_contact(state%status)), tiny(1.0_wp))
-         values(quantity_peak_pressure) = maxval(state%fields%pressure)
-         values(quantity_peak_shear) = maxval(abs(state%fields%shear))
-         values(quantity_dissipation) = state%dissipation
-      end associate
+      call observables_of(simulation, all_values)
+      values = [(all_values(observable_place(quantity_names(quantity))), quantity=1, quantity_count)]
+      values(quantity_half_width) = 0.5_wp*all_values(observable_place('contact_length'))
    end function quantities_of
 
-   !> Uncertainty of each quantity within an interval. An edge of a contact or stick zone is uncertain by half an interval,
-   !> unless a body ends there; the peak of the shear traction lies between two nodes.
+   !> Uncertainty of each quantity within an interval: that of the edges of contact and stick zones, and that of cusps.
    function interval_allowances(simulation) result(allowances)
       type(simulation_type), intent(in) :: simulation
       real(wp) :: allowances(quantity_count)
+      type(patch_type), allocatable :: patches(:)
       real(wp) :: contact, stick, length
+      integer :: i
 
       associate (state => simulation%contact%state, model => simulation%contact%model)
+         call find_patches(model, state, patches)
          ! Errors of the two edges of one patch add up; those of several patches are independent.
-         contact = sqrt(0.5_wp*squares_at_edges(model, in_contact(state%status)))
+         contact = sqrt(2.0_wp*sum(patches%left_error**2 + patches%right_error**2))
          stick = model%interval()
-         if (any(holds(state%status))) stick = sqrt(0.5_wp*squares_at_edges(model, holds(state%status)))
-         length = max(sum(model%width, mask=in_contact(state%status)), model%interval())
+         if (any(holds(state%status))) &
+            stick = sqrt(2.0_wp*sum([(sum(patches(i)%stick%left_error**2 + patches(i)%stick%right_error**2), i=1, size(patches))]))
+         length = max(sum(patches%length()), model%interval())
          allowances = 0.0_wp
          allowances(quantity_half_width) = 0.5_wp*contact
          allowances(quantity_stick_ratio) = norm2([stick, contact*state%stick_nodes()/max(state%contact_nodes(), 1)])/length
-         if (model%compliance%has_block(block_wt)) &
+         if (model%compliance%has_block(block_wt)) then
             allowances(quantity_peak_pressure) = room_at_cusp(state%fields%pressure, holds(state%status))
-         allowances(quantity_peak_shear) = room_at_peak(abs(state%fields%shear), &
-                                                        model%static_friction*state%fields%pressure, holds(state%status))
+            ! The pressure at the edge of a stick zone, which limits the shear there, is interpolated across a cusp.
+            if (pressing_shears(model)) allowances(quantity_peak_shear) = &
+               max(maxval([(largest_shear(model, state, patches(i)), i=1, size(patches))]) - maxval(abs(state%fields%shear)), &
+                   0.0_wp)
+         end if
       end associate
    end function interval_allowances
-
-   !> Squares of the outermost intervals of zones, except where a body ends, where the edge is exact; length^2.
-   pure real(wp) function squares_at_edges(model, inside) result(squares)
-      type(contact_model_type), intent(in) :: model
-      logical, intent(in) :: inside(:)
-      type(zone_type), allocatable :: zones(:)
-      integer :: i
-
-      zones = zones_of(inside)
-      squares = 0.0_wp
-      do i = 1, size(zones)
-         if (.not. ends_with_body(model, zones(i)%first, -1)) squares = squares + model%width(zones(i)%first)**2
-         if (.not. ends_with_body(model, zones(i)%last, 1)) squares = squares + model%width(zones(i)%last)**2
-      end do
-   end function squares_at_edges
 
    !> Uncertainty of a peak of the pressure that is a cusp, as with full coupling, force/length^2: at the edge of a stick zone,
    !> which lies between two nodes, or where contact began when bodies are pressed with friction, where the strain of the stick
@@ -365,28 +363,5 @@ contains
          end do
       end do
    end function room_at_cusp
-
-   !> Uncertainty of the peak of the shear traction, force/length^2. At the edge of a stick zone the true peak lies between
-   !> two nodes, at most at the friction limit of the sticking one; elsewhere, difference to the nearer neighbouring value.
-   !> Arguments of shape (nodes), force/length^2.
-   pure real(wp) function room_at_peak(shear, limit, held) result(room)
-      real(wp), intent(in) :: shear(:), limit(:)
-      logical, intent(in) :: held(:)
-      integer :: peak, neighbour, side
-
-      peak = maxloc(shear, dim=1)
-      room = shear(peak)
-      do side = -1, 1, 2
-         neighbour = peak + side
-         if (neighbour < 1 .or. neighbour > size(shear)) cycle
-         room = min(room, shear(peak) - shear(neighbour))
-      end do
-      do side = -1, 1, 2
-         neighbour = peak + side
-         if (neighbour < 1 .or. neighbour > size(shear)) cycle
-         if (held(peak) .eqv. held(neighbour)) cycle
-         room = max(room, merge(limit(peak), limit(neighbour), held(peak)) - shear(peak))
-      end do
-   end function room_at_peak
 
 end module mfv_discretisation_error

@@ -11,7 +11,7 @@ module mfv_observables
    use mfv_simulation, only: mark_loading, simulation_type
    use mfv_state_interior, only: state_interior
    use mfv_stress_search, only: largest_tension, largest_type
-   use mfv_zone_edges, only: find_zone_edges, zone_edges_type
+   use mfv_zone_edges, only: outermost_edges, find_patches, find_zone_edges, largest_shear, patch_type, zone_edges_type
    implicit none
    private
    public :: observable_count, observables, observable_place, observables_of
@@ -38,7 +38,8 @@ module mfv_observables
            row_type('contact_centre', 'length', 'middle between the outermost edges at the end, arc length from the origin of x'), &
           row_type('stick_ratio', '1', 'length of the stick zones over that of the contact at the end, from edges between nodes'), &
                                 row_type('peak_pressure', 'force/length^2', 'largest pressure at the end'), &
-                                row_type('peak_shear', 'force/length^2', 'largest size of the shear traction at the end'), &
+                                row_type('peak_shear', 'force/length^2', &
+                                        'largest size of the shear traction at the end, also at stick edges between nodes'), &
                                 row_type('cycles', '1', 'whole cycles of the last step that has any'), &
                                 row_type('cycle_dissipation', 'force', 'energy dissipated in the last cycle, per unit thickness'), &
                          row_type('first_cycle_dissipation', 'force', 'energy dissipated in the first cycle, per unit thickness'), &
@@ -107,11 +108,13 @@ contains
       type(simulation_type), intent(in) :: simulation
       real(wp), intent(inout) :: values(:)
       type(zone_edges_type) :: edges
-      real(wp) :: mean_peak, limit
+      type(patch_type), allocatable :: patches(:)
+      real(wp) :: mean_peak, limit, shear
       integer :: i
 
       associate (state => simulation%contact%state, model => simulation%contact%model)
-         call find_zone_edges(model, state, edges)
+         call find_patches(model, state, patches)
+         edges = outermost_edges(patches)
          do i = 1, motion_count
             if (motions(i)%optional) cycle
             call put(values, trim(motions(i)%force_key), state%fields%force(i))
@@ -124,7 +127,11 @@ contains
          call put(values, 'contact_centre', edges%centre())
          call put(values, 'stick_ratio', edges%stick_ratio())
          call put(values, 'peak_pressure', maxval(state%fields%pressure))
-         call put(values, 'peak_shear', maxval(abs(state%fields%shear)))
+         shear = maxval(abs(state%fields%shear))
+         do i = 1, size(patches)
+            shear = max(shear, largest_shear(model, state, patches(i)))
+         end do
+         call put(values, 'peak_shear', shear)
          call put(values, 'half_width_number', edges%half_width()*model%scene%curvature())
          call add_tension(simulation, .false., 'lower', values)
          call add_tension(simulation, .true., 'upper', values)
@@ -135,7 +142,7 @@ contains
          if (.not. (state%fields%force(motion_approach) > 0.0_wp .and. edges%contact)) return
          mean_peak = 2.0_wp*state%fields%force(motion_approach)/(pi*edges%half_width())
          call put(values, 'pressure_number', maxval(state%fields%pressure)/mean_peak)
-         call put(values, 'shear_number', maxval(abs(state%fields%shear))/mean_peak)
+         call put(values, 'shear_number', shear/mean_peak)
          call put(values, 'creepage', simulation%contact%rolling%creepage())
          if (edges%patches /= 1) return
          limit = model%scene%friction%static%largest()*edges%half_width()*model%scene%curvature()

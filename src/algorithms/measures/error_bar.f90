@@ -1,17 +1,19 @@
 !> Error bars by Richardson extrapolation from several meshes (Richardson 1911; Roache 1994; least squares as in Eca and
-!> Hoekstra 2014). Edges of contact and stick zones lie anywhere in an interval: errors are a sawtooth over the number of
-!> intervals. The bar is therefore a mean square over all meshes, plus the uncertainty within an interval.
+!> Hoekstra 2014). Edges of contact and stick zones lie anywhere in an interval: errors jump from one number of intervals to
+!> the next. The bar is therefore a mean square over all meshes, plus the uncertainty within an interval.
 module mfv_error_bar
    use, intrinsic :: ieee_arithmetic, only: ieee_positive_inf, ieee_quiet_nan, ieee_value
    use mfv_kinds, only: wp
    implicit none
    private
    public :: error_bar_type, error_estimate_type, new_error_bar, unresolved_bar, quantity_count, quantity_half_width, &
-             quantity_stick_ratio, quantity_peak_pressure, quantity_peak_shear, quantity_dissipation, lowest_order, highest_order
+             quantity_stick_ratio, quantity_peak_pressure, quantity_peak_shear, quantity_dissipation, quantity_lower_tension, &
+             quantity_upper_tension, lowest_order, highest_order
 
    !> Estimated quantities.
    integer, parameter :: quantity_half_width = 1, quantity_stick_ratio = 2, quantity_peak_pressure = 3, &
-                         quantity_peak_shear = 4, quantity_dissipation = 5, quantity_count = 5
+                         quantity_peak_shear = 4, quantity_dissipation = 5, quantity_lower_tension = 6, &
+                         quantity_upper_tension = 7, quantity_count = 7
 
    !> A quantity with its error bar.
    type :: error_bar_type
@@ -21,8 +23,8 @@ module mfv_error_bar
       !> Value on the finest mesh, and estimated distance to its limit under mesh refinement, infinite without a limit; in the
       !> unit of the quantity.
       real(wp) :: value = 0.0_wp, error = 0.0_wp
-      !> Observed order of convergence, between lowest_order and highest_order; lowest_order if only whole intervals are
-      !> observed; negative without a limit.
+      !> Observed order of convergence, between lowest_order and highest_order; lowest_order if the value depends on edges;
+      !> negative without a limit.
       real(wp) :: order = 0.0_wp
       !> Values on the coarser meshes, finest first.
       real(wp), allocatable :: coarser_values(:)
@@ -54,12 +56,13 @@ module mfv_error_bar
 contains
 
    !> Error bar of a quantity with `values` on meshes of `nodes` intervals, finest first, shape (2 or more). `allowances`:
-   !> uncertainty within an interval on each mesh, in the unit of the values, shape of values. `counted`: values are numbers
-   !> of intervals; differences below the allowances have no significance. `bounded`: the quantity always has a limit.
-   pure type(error_bar_type) function new_error_bar(nodes, values, allowances, counted, bounded) result(bar)
+   !> uncertainty within an interval on each mesh, in the unit of the values, shape of values. `by_edges`: values depend on
+   !> edges of zones, whose errors jump from mesh to mesh: of first order, and differences below the allowances have no
+   !> significance. `bounded`: the quantity always has a limit.
+   pure type(error_bar_type) function new_error_bar(nodes, values, allowances, by_edges, bounded) result(bar)
       integer, intent(in) :: nodes(:)
       real(wp), intent(in) :: values(:), allowances(:)
-      logical, intent(in) :: counted, bounded
+      logical, intent(in) :: by_edges, bounded
       real(wp), dimension(size(values) - 1) :: ratio, difference
       real(wp) :: scatter
 
@@ -73,9 +76,9 @@ contains
       end if
       ratio = real(nodes(1), wp)/nodes(2:)
       difference = abs(values(2:) - values(1))
-      if (counted) difference = max(difference - allowances(2:) - allowances(1) - tolerance*abs(values(1)), 0.0_wp)
-      bar%order = observed_order(nodes, values)
-      if (counted .and. .not. any(difference > 0.0_wp)) bar%order = lowest_order
+      if (by_edges) difference = max(difference - allowances(2:) - allowances(1) - tolerance*abs(values(1)), 0.0_wp)
+      bar%order = lowest_order
+      if (.not. by_edges) bar%order = observed_order(nodes, values)
       scatter = norm2(difference/(ratio**bar%order - 1.0_wp))/sqrt(real(size(difference), wp))
       bar%error = norm2([allowances(1), safety*scatter])
    end function new_error_bar

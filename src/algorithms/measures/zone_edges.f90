@@ -12,23 +12,26 @@
 module mfv_zone_edges
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_body, only: shape_matrix
-   use mfv_compliance, only: block_wp, block_wt
+   use mfv_compliance, only: block_up, block_wp, block_wt
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
    use mfv_edge_solutions, only: least_power, most_power, solved_distance
    use mfv_kinds, only: pi, wp
-   use mfv_motions, only: motion_shift
+   use mfv_motions, only: motion_approach, motion_shift
    use mfv_node_status, only: holds, in_contact, slip_sign, slips
+   use mfv_scene, only: control_keep
    use mfv_surface_tractions, only: root_shift
    implicit none
    private
-   public :: zone_type, patch_type, zone_edges_type, find_patches, find_zone_edges, zones_of, ends_with_body
+   public :: zone_type, patch_type, zone_edges_type, find_patches, find_zone_edges, outermost_edges, largest_shear, &
+             pressing_shears, zones_of, ends_with_body
 
    !> A zone of neighbouring nodes, from `first` to `last`, and its edges: arc lengths from the origin of x, positive to the
-   !> right.
+   !> right; and the uncertainty of these edges, lengths.
    type :: zone_type
       integer :: first = 0, last = 0
       real(wp) :: left = 0.0_wp, right = 0.0_wp
+      real(wp) :: left_error = 0.0_wp, right_error = 0.0_wp
    contains
       procedure :: length
    end type zone_type
@@ -61,6 +64,10 @@ module mfv_zone_edges
    !> Largest number of nodes to extrapolate from.
    integer, parameter :: most_samples = 7
    real(wp), parameter :: unknown_bend = 1.0e10_wp
+   !> Uncertainty of an edge, intervals (docs/verification.md): at least, of contact and of stick zones; behind a stick zone that
+   !> can have grown, where the exponent is not known; of an edge that cannot be located between nodes, or beside which fewer
+   !> than two nodes slip.
+   real(wp), parameter :: least_error = 0.002_wp, least_stick_error = 0.005_wp, error_if_grown = 0.2_wp, error_if_unknown = 0.5_wp
    !> With coupling, number of slipping nodes next to an edge from which its discretisation error is known.
    integer, parameter :: fewest_slipping = 6
 
@@ -113,9 +120,16 @@ contains
       type(contact_state_type), intent(in) :: state
       type(zone_edges_type), intent(out) :: edges
       type(patch_type), allocatable :: patches(:)
-      integer :: i, j
 
       call find_patches(model, state, patches)
+      edges = outermost_edges(patches)
+   end subroutine find_zone_edges
+
+   !> The outermost edges and total lengths of patches.
+   pure type(zone_edges_type) function outermost_edges(patches) result(edges)
+      type(patch_type), intent(in) :: patches(:)
+      integer :: i, j
+
       edges%patches = size(patches)
       edges%contact = edges%patches > 0
       do i = 1, edges%patches
@@ -131,7 +145,7 @@ contains
             end associate
          end do
       end do
-   end subroutine find_zone_edges
+   end function outermost_edges
 
    !> The contact patches in a state, from left to right. Where tractions cannot be extrapolated (few nodes, sharp corners,
    !> friction laws without a sharp limit) the edge is the end of the outermost node's surface.
@@ -151,8 +165,8 @@ contains
          patches(i)%right_ends = ends_with_body(model, zones(i)%last, 1)
          patches(i)%left_power = contact_power(model, state, zones(i)%first, -1)
          patches(i)%right_power = contact_power(model, state, zones(i)%last, 1)
-         patches(i)%left = contact_edge(model, state, patches(i), -1)
-         patches(i)%right = contact_edge(model, state, patches(i), 1)
+         call find_contact_edge(model, state, patches(i), -1, patches(i)%left, patches(i)%left_error)
+         call find_contact_edge(model, state, patches(i), 1, patches(i)%right, patches(i)%right_error)
          if (i == 1) cycle
          ! Extrapolated edges of neighbouring patches must not overlap.
          if (patches(i - 1)%right <= patches(i)%left) cycle
@@ -178,8 +192,10 @@ contains
       patch%stick = zones
       do i = 1, size(zones)
          ! A stick zone is inside the contact.
-         left = max(stick_edge(model, state, zones(i), patch, -1), patch%left)
-         right = min(stick_edge(model, state, zones(i), patch, 1), patch%right)
+         call find_stick_edge(model, state, zones(i), patch, -1, left, patch%stick(i)%left_error)
+         call find_stick_edge(model, state, zones(i), patch, 1, right, patch%stick(i)%right_error)
+         left = max(left, patch%left)
+         right = min(right, patch%right)
          if (left > right) left = 0.5_wp*(left + right)
          patch%stick(i)%left = left
          patch%stick(i)%right = max(left, right)
@@ -200,6 +216,40 @@ contains
       where (slips(state%status)) slipped = abs(state%fields%tangential - state%fields%motion(motion_shift) - state%stuck_slip)
       held = holds(state%status) .or. (slips(state%status) .and. slipped <= nothing*maxval(slipped))
    end function held
+
+   !> Largest size of the shear traction in a patch, force/length^2: at its nodes, and at the edges of stick zones between nodes,
+   !> beyond which it is mu p. At nodes alone it would be too small by the root of the interval (Mindlin 1949: the remaining
+   !> friction inside the edge).
+   real(wp) function largest_shear(model, state, patch) result(largest)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      type(patch_type), intent(in) :: patch
+      integer :: i
+
+      largest = maxval(abs(state%fields%shear(patch%first:patch%last)))
+      if (.not. model%scene%friction%is_coulomb()) return
+      do i = 1, size(patch%stick)
+         call compare(patch%stick(i)%left, patch%stick(i)%first, -1)
+         call compare(patch%stick(i)%right, patch%stick(i)%last, 1)
+      end do
+
+   contains
+
+      !> The friction limit at the `edge` between the outermost node of a stick zone and the next one on `side`, if that slips.
+      subroutine compare(edge, outermost, side)
+         real(wp), intent(in) :: edge
+         integer, intent(in) :: outermost, side
+         real(wp) :: part
+
+         associate (next => outermost + side, pressure => state%fields%pressure)
+            if (next < patch%first .or. next > patch%last) return
+            if (.not. slips(state%status(next))) return
+            part = min(max((edge - model%arc(outermost))/(model%arc(next) - model%arc(outermost)), 0.0_wp), 1.0_wp)
+            largest = max(largest, model%kinetic_friction(next)*(pressure(outermost) + &
+                                                                 part*(pressure(next) - pressure(outermost))))
+         end associate
+      end subroutine compare
+   end function largest_shear
 
    !> The zones where `inside` is true, without edges.
    pure function zones_of(inside) result(zones)
@@ -227,25 +277,27 @@ contains
       end do
    end function zones_of
 
-   !> Edge of a contact patch on `side` (-1 left, 1 right), arc length from the origin of x.
-   real(wp) function contact_edge(model, state, patch, side) result(edge)
+   !> Edge of a contact patch on `side` (-1 left, 1 right), arc length from the origin of x, and its uncertainty, length.
+   subroutine find_contact_edge(model, state, patch, side, edge, error)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       type(patch_type), intent(in) :: patch
       integer, intent(in) :: side
+      real(wp), intent(out) :: edge, error
       type(samples_type) :: samples
       integer :: outermost
 
       outermost = merge(patch%last, patch%first, side > 0)
       edge = model%arc(outermost) + 0.5_wp*side*model%width(outermost)
+      error = 0.0_wp
       if (merge(patch%right_ends, patch%left_ends, side > 0)) return
       samples = sampled(model, state%fields%pressure, outermost, merge(patch%first, patch%last, side > 0))
       if (.not. model%compliance%elastic_block(block_wt) .or. slipping_run(state, outermost, -side) >= fewest_slipping) &
          samples%is_regular = has_known_error(model, outermost, samples%number)
-      associate (power => merge(patch%right_power, patch%left_power, side > 0))
-         edge = model%arc(outermost) + side*model%width(outermost)*refined_distance(straightened(samples, power))
-      end associate
-   end function contact_edge
+      samples = straightened(samples, merge(patch%right_power, patch%left_power, side > 0))
+      edge = model%arc(outermost) + side*model%width(outermost)*refined_distance(samples)
+      error = model%width(outermost)*uncertainty(samples)
+   end subroutine find_contact_edge
 
    !> Number of neighbouring nodes that slip in one direction, from a node to the left (-1) or right (1).
    pure integer function slipping_run(state, from, direction) result(nodes)
@@ -274,24 +326,27 @@ contains
          power = 0.5_wp + side*exponent_shift(model, node, state%fields%shear(node)/state%fields%pressure(node))
    end function contact_power
 
-   !> Edge of a stick zone on `side` (-1 left, 1 right), arc length from the origin of x: where the shear traction reaches the
-   !> friction limit. If the next node is open, the edge is that of the patch or, with a slip zone narrower than an interval,
-   !> inside it.
-   real(wp) function stick_edge(model, state, zone, patch, side) result(edge)
+   !> Edge of a stick zone on `side` (-1 left, 1 right), arc length from the origin of x, and its uncertainty, length: where the
+   !> shear traction reaches the friction limit. If the next node is open, the edge is that of the patch or, with a slip zone
+   !> narrower than an interval, inside it.
+   subroutine find_stick_edge(model, state, zone, patch, side, edge, error)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       type(zone_type), intent(in) :: zone
       type(patch_type), intent(in) :: patch
       integer, intent(in) :: side
+      real(wp), intent(out) :: edge, error
       real(wp) :: lack(size(state%status)), power, direction
       type(samples_type) :: samples
-      integer :: last, next, other
+      integer :: last, next, other, patch_end
 
+      patch_end = merge(patch%last, patch%first, side > 0)
       last = merge(zone%last, zone%first, side > 0)
       other = merge(zone%first, zone%last, side > 0)
       next = last + side
       edge = model%arc(last) + 0.5_wp*side*model%width(last)
-      if (last == merge(patch%last, patch%first, side > 0)) then
+      error = error_if_unknown*model%width(last)
+      if (last == patch_end) then
          edge = merge(patch%right, patch%left, side > 0)
          if (merge(patch%right_ends, patch%left_ends, side > 0) .or. last == other) return
          next = last
@@ -313,8 +368,27 @@ contains
       samples = sampled(model, lack, last, other)
       if (.not. model%compliance%elastic_block(block_wt)) samples%is_regular = has_known_error(model, last, samples%number)
       edge = model%arc(last) + side*model%width(last)*distance_of_lack(samples, power)
+      error = model%width(last)*max(uncertainty(straightened(samples, power)), least_stick_error)
+      call correct_by_slip(edge, error)
+      if (stick_zones_can_grow(model)) error = max(error, model%width(last)*merge(error_if_unknown, error_if_grown, &
+                                                                                  abs(patch_end - last) < 2))
 
    contains
+
+      !> Behind an older stick zone that ended nearby, the remaining friction vanishes twice within a few intervals: if the slip
+      !> disagrees with the traction, it locates the edge.
+      subroutine correct_by_slip(edge, error)
+         real(wp), intent(inout) :: edge, error
+         real(wp), parameter :: agreement = 0.35_wp
+         real(wp) :: by_slip
+
+         if (next == patch_end .or. next + side < patch%first .or. next + side > patch%last) return
+         if (stick_zones_can_grow(model)) return
+         by_slip = edge_by_slip(model, state, next, side, edge)
+         if (abs(by_slip - edge) <= agreement*model%width(last)) return
+         error = max(error, min(abs(by_slip - edge), error_if_unknown*model%width(last)))
+         edge = by_slip
+      end subroutine correct_by_slip
 
       !> Whether a sticking node is at its friction limit within tolerance.
       pure logical function at_its_limit(node)
@@ -323,7 +397,7 @@ contains
 
          at_its_limit = lack(node) <= tolerance*model%static_friction(node)*state%fields%pressure(node)
       end function at_its_limit
-   end function stick_edge
+   end subroutine find_stick_edge
 
    !> The outermost values of a traction in a zone from node `outermost` to node `other`; shape of the traction (nodes).
    pure type(samples_type) function sampled(model, traction, outermost, other) result(samples)
@@ -497,6 +571,49 @@ contains
       distance = distance_to_zero(samples, .false.)
       if (samples%is_regular) distance = solved_distance(samples%inwards, samples%value, samples%power, distance)
    end function refined_distance
+
+   !> Whether stick zones can have grown while friction acted, so that the exponent at their edges is not known: pressing with
+   !> coupling or oblique loading.
+   pure logical function stick_zones_can_grow(model) result(can_grow)
+      type(contact_model_type), intent(in) :: model
+      integer :: i
+
+      can_grow = .false.
+      do i = 1, size(model%scene%steps)
+         associate (step => model%scene%steps(i))
+            can_grow = can_grow .or. step%friction .and. step%control(motion_approach) /= control_keep .and. &
+                       (pressing_shears(model) .or. step%control(motion_shift) /= control_keep)
+         end associate
+      end do
+   end function stick_zones_can_grow
+
+   !> Whether pressing causes shear tractions: not with coupling of the order of a/R alone, as of a cylinder on a half-plane of
+   !> the same material.
+   pure logical function pressing_shears(model)
+      type(contact_model_type), intent(in) :: model
+      real(wp), parameter :: none = 1.0e-12_wp
+
+      associate (scene => model%scene)
+         pressing_shears = model%compliance%has_block(block_up) .and. &
+                           (abs(scene%dundurs_beta()) > none .or. (scene%lower%circular() .and. scene%upper%circular()))
+      end associate
+   end function pressing_shears
+
+   !> Uncertainty of the zero of nearly linear values, intervals: small with a known discretisation error, otherwise the
+   !> distance of the zeros by near and by farther values.
+   pure real(wp) function uncertainty(samples)
+      type(samples_type), intent(in) :: samples
+      real(wp) :: near, farther
+      logical :: found(2)
+
+      uncertainty = least_error
+      if (samples%is_regular) return
+      uncertainty = error_if_unknown
+      if (samples%number < most_samples) return
+      call find_zero_of_three(samples%inwards(1:3), samples%value(1:3), near, found(1))
+      call find_zero_of_three(samples%inwards(2:6:2), samples%value(2:6:2), farther, found(2))
+      if (all(found)) uncertainty = min(max(abs(farther - near), least_error), error_if_unknown)
+   end function uncertainty
 
    !> Zero of nearly linear values, outermost first, in intervals outwards from the outermost node. Used are the second to
    !> fourth node, because the outermost one has the largest discretisation error; the third, fifth and seventh if the third

@@ -9,13 +9,14 @@ module mfv_result_fields
    use mfv_closed_form, only: closed_form_of, closed_form_type
    use mfv_compliance, only: coupling_names
    use mfv_contact_state, only: contact_state_type
-   use mfv_error_bar
    use mfv_cycle, only: cycle_type
+   use mfv_discretisation_error, only: quantity_names
+   use mfv_error_bar
    use mfv_kinds, only: wp
    use mfv_material, only: plane_names
    use mfv_motions, only: motions, motion_count => user_motions, motion_approach, motion_shift, motion_rotation, bulk_motions
    use mfv_node_status, only: event_names, holds, in_contact, node_status_names
-   use mfv_observables, only: observable_count, observables, observables_of
+   use mfv_observables, only: observable_count, observable_place, observables, observables_of
    use mfv_scene, only: algorithm_names, stepping_leap, stepping_names
    use mfv_simulation, only: history_none, mark_cycle_start, mark_loading, mark_return, mark_reversal, &
                              sensitivity_type, simulation_type
@@ -24,7 +25,7 @@ module mfv_result_fields
    use mfv_strings, only: add_text, list_of_words, string_type, to_text, word_of
    use mfv_text_file, only: find_working_directory
    use mfv_version, only: library_version
-   use mfv_zone_edges, only: find_patches, find_zone_edges, patch_type, zone_edges_type
+   use mfv_zone_edges, only: find_patches, find_zone_edges, largest_shear, patch_type, zone_edges_type
    implicit none
    private
    public :: field_type, result_groups, group_fields, field_named, step_group, along_nodes, along_records, &
@@ -565,7 +566,7 @@ contains
             normal_force(i) = model%resultant(motion_approach, pressure, shear)
             tangential_force(i) = model%resultant(motion_shift, pressure, shear)
             peak_pressure(i) = maxval(pressure)
-            peak_shear(i) = maxval(abs(shear))
+            peak_shear(i) = largest_shear(model, simulation%contact%state, patches(i))
          end do
       end associate
       call list%add('normal_force', normal_force, along, 'force/length', 'normal force of the patch per unit thickness')
@@ -573,7 +574,8 @@ contains
                     'body per unit thickness')
       call list%add('peak_pressure', peak_pressure, along, 'force/length^2', 'largest pressure in the patch')
       if (simulation%contact%model%tangential) call list%add('peak_shear', peak_shear, along, 'force/length^2', 'largest '// &
-                                                             'magnitude of the shear traction in the patch')
+                                                             'size of the shear traction in the patch, also at stick edges '// &
+                                                             'between nodes')
    end subroutine add_patch_loads
 
    !> The cycles, and the distribution of dissipation in the last one.
@@ -685,26 +687,25 @@ contains
       type(error_estimate_type), intent(in) :: estimate
       type(zone_edges_type) :: edges
       type(error_bar_type) :: length
+      integer :: i
 
       call find_zone_edges(simulation%contact%model, simulation%contact%state, edges)
       call list%add('nodes', estimate%nodes, 'intervals of the mesh, as &mesh nodes counts them')
       call list%add('companion_nodes', estimate%coarser_nodes, along_companions, 'intervals of the coarser meshes')
-      associate (bar => estimate%bar)
-         if (edges%patches > 1) then
-            length = bar(quantity_half_width)
-            length%value = 2.0_wp*length%value
-            length%error = 2.0_wp*length%error
-            length%coarser_values = 2.0_wp*length%coarser_values
-            call add_bar(list, length, 'contact_length', 'length', 'length of all intervals in contact')
-         else
-            call add_bar(list, bar(quantity_half_width), 'contact_half_width', 'length', 'half the length of all intervals in '// &
-                         'contact')
-         end if
-         call add_bar(list, bar(quantity_stick_ratio), 'stick_ratio', '1', 'stuck nodes over nodes in contact')
-         call add_bar(list, bar(quantity_peak_pressure), 'peak_pressure', 'force/length^2', 'largest pressure')
-         call add_bar(list, bar(quantity_peak_shear), 'peak_shear', 'force/length^2', 'largest magnitude of the shear traction')
-         call add_bar(list, bar(quantity_dissipation), 'dissipation', 'force', dissipation_meaning)
-      end associate
+      do i = 1, quantity_count
+         associate (row => observables(observable_place(quantity_names(i))))
+            if (i == quantity_half_width .and. edges%patches > 1) then
+               length = estimate%bar(i)
+               length%value = 2.0_wp*length%value
+               length%error = 2.0_wp*length%error
+               length%coarser_values = 2.0_wp*length%coarser_values
+               call add_bar(list, length, 'contact_length', 'length', 'length of the contact, of all its patches, from edges '// &
+                            'between nodes')
+            else
+               call add_bar(list, estimate%bar(i), trim(row%name), trim(row%unit), trim(row%meaning))
+            end if
+         end associate
+      end do
    end subroutine add_estimate
 
    !> Changes caused by perturbed friction.

@@ -3,6 +3,7 @@ module mfv_summary
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_case, only: case_type
    use mfv_contact_model, only: contact_model_type, new_contact_model
+   use mfv_discretisation_error, only: quantity_names
    use mfv_error_bar
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
@@ -165,10 +166,9 @@ contains
       character(:), allocatable, intent(inout) :: text
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
-      character(*), parameter :: names(quantity_count) = [character(18) :: 'contact_half_width', 'stick_ratio', &
-                                                                                       'peak_pressure', 'peak_shear', 'dissipation']
-      character(*), parameter :: words(quantity_count) = [character(18) :: 'contact half-width', 'stick ratio', &
-                                                                                       'peak pressure', 'peak shear', 'dissipation']
+      character(*), parameter :: words(quantity_count) = [character(21) :: 'contact half-width', 'stick ratio', 'peak pressure', &
+                                                                        'peak shear', 'dissipation', 'tension of lower body', &
+                                                                                                'tension of upper body']
       type(field_type), allocatable :: fields(:)
       character(:), allocatable :: meshes, value, percent
       integer :: i
@@ -184,8 +184,8 @@ contains
                        to_text(2.0_wp*simulation%estimate%bar(quantity_half_width)%error, 2))
       do i = 1, quantity_count
          associate (bar => simulation%estimate%bar(i))
-            if (.not. bar%known .or. field_named(fields, trim(names(i))) == 0) cycle
-            value = trim(words(i))//' '//amount(fields, trim(names(i)))
+            if (.not. bar%known .or. field_named(fields, trim(quantity_names(i))) == 0) cycle
+            value = trim(words(i))//' '//amount(fields, trim(quantity_names(i)))
             percent = ''
             if (abs(bar%value) > 0.0_wp) percent = ' ('//to_text(100.0_wp*bar%error/abs(bar%value), 2)//' %)'
             if (.not. bar%resolved) then
