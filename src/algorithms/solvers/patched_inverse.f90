@@ -41,7 +41,7 @@ module mfv_patched_inverse
       !> The inverse of the block of a small group, shape (nodes, nodes); of T^-1(G, G), shape (gaps, gaps).
       real(wp), allocatable :: stored(:, :), of_gaps(:, :)
       !> T^-1 on all nodes between the ends, and work space for it.
-      type(toeplitz_inverse_type) :: inverse
+      type(toeplitz_inverse_type), allocatable :: inverse
       real(wp), allocatable :: work(:), others(:)
       !> Points, shape (points); V, shape (nodes, points); U^T V, shape (points, points).
       integer, allocatable :: points(:)
@@ -214,7 +214,8 @@ contains
       integer :: nearest
 
       nearest = nearest_order(old, length)
-      if (nearest > 0) call group%inverse%move_from(old(nearest)%inverse)
+      if (nearest > 0) call move_alloc(old(nearest)%inverse, group%inverse)
+      if (nearest == 0) allocate (group%inverse)
       if (.not. present(other)) return
       if (.not. allocated(other%groups)) return
       nearest = nearest_order(other%groups, length)
@@ -231,6 +232,7 @@ contains
 
       nearest = 0
       do i = 1, size(groups)
+         if (.not. allocated(groups(i)%inverse)) cycle
          if (groups(i)%inverse%order == 0) cycle
          if (nearest == 0) nearest = i
          if (abs(groups(i)%inverse%order - length) < abs(groups(nearest)%inverse%order - length)) nearest = i
@@ -250,7 +252,7 @@ contains
       call move_alloc(from%points, to%points)
       call move_alloc(from%columns, to%columns)
       call move_alloc(from%products, to%products)
-      call to%inverse%move_from(from%inverse)
+      call move_alloc(from%inverse, to%inverse)
    end subroutine move_group
 
    !> Whether the inverse of a group of some `nodes` on a `length` is stored.
