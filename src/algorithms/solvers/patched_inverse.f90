@@ -267,12 +267,14 @@ contains
       type(group_type), intent(inout) :: group
       real(wp), intent(in) :: kernel(:)
       integer, intent(in) :: nodes(:)
+      logical :: is_gap(nodes(1):nodes(size(nodes)))
       integer :: i, length
 
       length = nodes(size(nodes)) - nodes(1) + 1
       allocate (group%nodes, source=nodes)
-      allocate (group%gaps(length - size(nodes)))
-      call find_gaps(nodes, group%gaps)
+      is_gap = .true.
+      is_gap(nodes) = .false.
+      group%gaps = pack([(i, i=nodes(1), nodes(size(nodes)))], is_gap)
       if (is_stored(length, size(nodes))) then
          allocate (group%stored(size(nodes), size(nodes)))
          do i = 1, size(nodes)
@@ -287,21 +289,6 @@ contains
       call group%inverse%entries(group%gaps - nodes(1) + 1, group%of_gaps)
       call invert(group%of_gaps)
    end subroutine set_group
-
-   !> The nodes between the ends of `nodes` that are missing.
-   pure subroutine find_gaps(nodes, gaps)
-      integer, intent(in) :: nodes(:)
-      integer, intent(out) :: gaps(:)
-      integer :: found, i, node
-
-      found = 0
-      do i = 2, size(nodes)
-         do node = nodes(i - 1) + 1, nodes(i) - 1
-            found = found + 1
-            gaps(found) = node
-         end do
-      end do
-   end subroutine find_gaps
 
    !> Invert a symmetric positive definite matrix, or, if round-off spoils this, its diagonal.
    subroutine invert(matrix)
