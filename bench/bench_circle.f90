@@ -9,7 +9,7 @@ module bench_circle
    use mfv_circle, only: kernel_exact, kernel_fourier
    use mfv_circle_kernels
    use mfv_clock, only: seconds_now
-   use mfv_friction, only: coulomb_friction
+   use mfv_friction, only: uniform_friction
    use mfv_kinds, only: pi, wp
    use mfv_material, only: new_material, plane_strain
    use mfv_motions, only: motion_approach, motion_shift, control_force
@@ -82,7 +82,7 @@ contains
       scene%upper = new_half_plane_body()
       scene%mesh%nodes = circle
       scene%mesh%whole_circle = .true.
-      scene%friction = coulomb_friction(0.3_wp)
+      scene%friction = uniform_friction('coulomb', 0.3_wp, 0.3_wp)
       scene%method%linear_solver = solver_dgesv
       step%control(motion_approach) = control_force
       step%target(motion_approach) = half_width**2*pi*scene%modulus()/2

@@ -23,7 +23,7 @@ module mfv_c
    use mfv_scene, only: step_type
    use mfv_status
    use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
-   use mfv_strings, only: copy_to_c, list_of_words, string_type, to_text
+   use mfv_strings, only: copy_to_c, from_c, list_of_words, string_type, to_text
    use mfv_version, only: library_version
    implicit none
    private
@@ -959,12 +959,9 @@ contains
       type(c_ptr), intent(in) :: pointer_to_text
       character(len=c_strlen(pointer_to_text)) :: text
       character(kind=c_char), pointer :: characters(:)
-      integer :: i
 
-      call c_f_pointer(pointer_to_text, characters, [len(text)])
-      do i = 1, len(text)
-         text(i:i) = characters(i)
-      end do
+      call c_f_pointer(pointer_to_text, characters, [len(text) + 1])
+      text = from_c(characters)
    end function text_in
 
    !> Text of a C string, or `default` where the pointer is null.

@@ -53,24 +53,15 @@ contains
       character(*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error
 
-      call replace(path, error)
+      call replace_file(path, error=error)
    end subroutine check_replaceable
 
-   !> Replace the file at `path` by these bytes. Error MFV_FILE_ERROR, as in check_replaceable, or a full disk: the old file
-   !> is unchanged; or, as the message says, the new file exists but may be lost in a power cut.
+   !> Replace the file at `path` by these bytes; without them only check_replaceable. MFV_FILE_ERROR, as there, or a full disk:
+   !> the old file is unchanged; or, as the message says, the new file exists but may be lost in a power cut.
    subroutine replace_file(path, bytes, error)
       character(*), intent(in) :: path
-      integer(int8), intent(in) :: bytes(:)
-      type(error_type), allocatable, intent(out) :: error
-
-      call replace(path, error, bytes)
-   end subroutine replace_file
-
-   !> The same; without bytes only a check.
-   subroutine replace(path, error, bytes)
-      character(*), intent(in) :: path
-      type(error_type), allocatable, intent(out) :: error
       integer(int8), intent(in), optional :: bytes(:)
+      type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: why
       integer(c_int) :: code, is_in_place
 
@@ -87,7 +78,7 @@ contains
       else
          call set_error(error, MFV_FILE_ERROR, path//' cannot be written: '//why)
       end if
-   end subroutine replace
+   end subroutine replace_file
 
    !> Write a text to a file descriptor. `why`: the reason of a failure, by the operating system; else unallocated.
    subroutine write_all(descriptor, text, why)

@@ -3,7 +3,7 @@ module mfv_material
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: material_type, new_material, kolosov_constant, shear_modulus_of, flexibilities, plane_strain, plane_stress, plane_names
+   public :: material_type, new_material, shear_modulus_of, flexibilities, plane_strain, plane_stress, plane_names
 
    !> The two plane states.
    integer, parameter :: plane_strain = 1, plane_stress = 2
@@ -19,7 +19,6 @@ module mfv_material
       real(wp) :: kolosov = 0.0_wp
    contains
       procedure :: plane_modulus
-      procedure :: dundurs_beta
    end type material_type
 
 contains
@@ -69,13 +68,5 @@ contains
 
       plane_modulus = 4.0_wp*self%shear_modulus/(self%kolosov + 1.0_wp)
    end function plane_modulus
-
-   !> Dundurs' second parameter against a rigid body, (kappa - 1)/(kappa + 1). Dissertation eq. 6.3 prints kappa_2
-   !> in the denominator; eq. 6.1 with G_2 infinite gives kappa_1.
-   pure real(wp) function dundurs_beta(self)
-      class(material_type), intent(in) :: self
-
-      dundurs_beta = (self%kolosov - 1.0_wp)/(self%kolosov + 1.0_wp)
-   end function dundurs_beta
 
 end module mfv_material

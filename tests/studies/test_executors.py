@@ -13,8 +13,7 @@ import xarray
 from small import AXES, environment, long_study, run, write
 
 import mfv
-from mfv.studies.cases import solve
-from mfv.studies.executors import _one_blas_thread_meanwhile
+from mfv.studies.cases import one_blas_thread, solve
 from mfv.studies.namelist import read_study
 
 
@@ -129,7 +128,7 @@ def test_blas_is_left_as_it_was(study):
 
     with threadpoolctl.threadpool_limits(2, user_api="blas"):
         before = threads()
-        with _one_blas_thread_meanwhile():  # another study, in another thread
+        with one_blas_thread():  # another study, in another thread
             mfv.study(study[0] / "base.nml", {"friction%mu": [0.5]})
             assert set(threads()) == {1}
         assert threads() == before

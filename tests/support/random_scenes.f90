@@ -3,7 +3,7 @@ module test_random_scenes_support
    use, intrinsic :: iso_fortran_env, only: int64
    use mfv_body
    use mfv_compliance, only: coupling_full, coupling_goodman, coupling_none
-   use mfv_friction
+   use test_friction
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: pi, wp
    use mfv_material, only: new_material, plane_strain, plane_stress

@@ -2,7 +2,7 @@
 module test_scenes
    use mfv_body
    use mfv_compliance, only: coupling_full
-   use mfv_friction, only: coulomb_friction, no_friction
+   use test_friction, only: coulomb_friction, no_friction
    use mfv_kinds, only: wp
    use mfv_material, only: new_material, plane_strain
    use mfv_motions, only: motion_approach, motion_shift, control_force

@@ -168,11 +168,8 @@ def _content(path: str) -> str:
 
 
 def solve(jobs: Sequence[Job]) -> tuple[float, list[Solved | None]]:
-    """Solve cases in a worker process, as `solve_here` does.
-
-    BLAS is limited to one thread, so that results are bit-identical in all processes.
-    """
-    _one_blas_thread()
+    """Solve cases in a worker process, as `solve_here` does."""
+    _one_blas_thread_for_good()
     observables()  # load the library before the time is measured
     return solve_here(None, jobs)
 
@@ -250,9 +247,13 @@ def _field(case: Case, path: str) -> Field | None:
         return None
 
 
-@functools.cache
-def _one_blas_thread() -> None:
+def one_blas_thread() -> Any:
+    """Limit BLAS to one thread in this process, until the context that this returns ends: the study uses the processors, and its
+    results are bit-identical."""
     import threadpoolctl
 
     library()  # threadpoolctl only sees loaded libraries
-    threadpoolctl.threadpool_limits(1, user_api="blas")
+    return threadpoolctl.threadpool_limits(1, user_api="blas")
+
+
+_one_blas_thread_for_good = functools.cache(one_blas_thread)

@@ -15,8 +15,7 @@ from concurrent.futures import TimeoutError as FuturesTimeout
 from ctypes import c_int
 from typing import Any
 
-from .._library import library
-from .cases import Job, Solved, solve, solve_here
+from .cases import Job, Solved, one_blas_thread, solve, solve_here
 
 #: Names of executors; 'dask:ADDRESS' is a running cluster.
 NAMES = ("threads", "processes", "mpi", "dask")
@@ -35,7 +34,7 @@ def solve_all(jobs: Mapping[str, Job], executor: str | Executor, workers: int | 
         function: Callable[[Sequence[Job]], tuple[float, list[Solved | None]]] = solve
         if isinstance(pool, ThreadPoolExecutor):
             function = functools.partial(solve_here, stop)
-            stack.enter_context(_one_blas_thread_meanwhile())
+            stack.enter_context(one_blas_thread())
         tasks: dict[Future[Any], list[str]] = {}
         try:
             for names in _cut(list(jobs), tasks, isinstance(pool, ThreadPoolExecutor)):
@@ -150,11 +149,3 @@ def _end_with_the_study() -> None:
     if study is not None:
         study.join()
         os._exit(1)
-
-
-def _one_blas_thread_meanwhile() -> Any:
-    """Limit BLAS to one thread in this process: the study uses the processors, and its results are bit-identical."""
-    import threadpoolctl
-
-    library()  # threadpoolctl only sees loaded libraries
-    return threadpoolctl.threadpool_limits(1, user_api="blas")

@@ -10,8 +10,8 @@ module mfv_friction
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: friction_type, friction_coefficient_type, uniform_coefficient, no_friction, coulomb_friction, &
-             static_kinetic_friction, weakening_friction, dahl_friction, friction_law_names, new_friction_law
+   public :: friction_type, friction_coefficient_type, uniform_coefficient, no_friction, uniform_friction, friction_law_names, &
+             new_friction_law
 
    !> Names of all laws, as in a case.
    character(*), parameter :: friction_law_names = 'coulomb static_kinetic weakening dahl'
@@ -58,7 +58,7 @@ contains
       friction%kinetic = friction%static
    end function no_friction
 
-   !> A law with uniform coefficients.
+   !> The law with the given name and uniform coefficients, with its parameters still to be set.
    function uniform_friction(name, mu_static, mu_kinetic) result(friction)
       character(*), intent(in) :: name
       real(wp), intent(in) :: mu_static, mu_kinetic
@@ -68,41 +68,6 @@ contains
       friction%kinetic = uniform_coefficient(mu_kinetic)
       call new_friction_law(name, friction%law)
    end function uniform_friction
-
-   !> Coulomb's law with the coefficient of friction mu >= 0. For mu = 0 the tangential problem is not modelled.
-   function coulomb_friction(mu) result(friction)
-      real(wp), intent(in) :: mu
-      type(friction_type) :: friction
-
-      friction = uniform_friction('coulomb', mu, mu)
-   end function coulomb_friction
-
-   !> mu_static >= mu_kinetic >= 0.
-   function static_kinetic_friction(mu_static, mu_kinetic) result(friction)
-      real(wp), intent(in) :: mu_static, mu_kinetic
-      type(friction_type) :: friction
-
-      friction = uniform_friction('static_kinetic', mu_static, mu_kinetic)
-   end function static_kinetic_friction
-
-   !> mu_static >= mu_kinetic >= 0; `distance`: slip over which friction decreases, length, > 0.
-   function weakening_friction(mu_static, mu_kinetic, distance) result(friction)
-      real(wp), intent(in) :: mu_static, mu_kinetic, distance
-      type(friction_type) :: friction
-
-      friction = uniform_friction('weakening', mu_static, mu_kinetic)
-      call friction%law%set_parameter('weakening_distance', distance)
-   end function weakening_friction
-
-   !> Dahl's law with the limit mu p, `stiffness` sigma > 0 (force/length^3) and `exponent` gamma >= 0.
-   function dahl_friction(mu, stiffness, exponent) result(friction)
-      real(wp), intent(in) :: mu, stiffness, exponent
-      type(friction_type) :: friction
-
-      friction = uniform_friction('dahl', mu, mu)
-      call friction%law%set_parameter('stiffness', stiffness)
-      call friction%law%set_parameter('exponent', exponent)
-   end function dahl_friction
 
    !> Replace a law by Coulomb's law if it is equivalent: static and kinetic coefficients equal everywhere.
    subroutine simplify(self)

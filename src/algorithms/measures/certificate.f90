@@ -15,7 +15,7 @@ module mfv_certificate
    use mfv_scene, only: algorithm_mfv, integration_explicit
    implicit none
    private
-   public :: certificate_type, new_certificate, residual_count, residual_names, residual_descriptions
+   public :: certificate_type, residual_count, residual_names, residual_descriptions
 
    integer, parameter :: elasticity_normal = 1, elasticity_tangential = 2, normal_force_balance = 3, &
                          tangential_force_balance = 4, contact_gap = 5, open_traction = 6, stick_slip = 7, &
@@ -75,13 +75,6 @@ module mfv_certificate
    end type certificate_type
 
 contains
-
-   !> Empty certificate of a model.
-   type(certificate_type) function new_certificate(model) result(certificate)
-      type(contact_model_type), intent(in) :: model
-
-      call certificate%find_applicable(model)
-   end function new_certificate
 
    !> Find out which residuals apply. No energy balance under Goodman's coupling with friction: its compliance is not
    !> symmetric. Nothing tangential before friction acts. Only the end states of large increments and of the conventional

@@ -211,16 +211,11 @@ contains
       integer, intent(inout) :: number
       type(cycle_type), intent(in) :: cycle
       logical, intent(in) :: last_only
-      type(cycle_type), allocatable :: longer(:)
       integer, parameter :: first_capacity = 8
 
       if (.not. allocated(cycles)) allocate (cycles(first_capacity))
       if (last_only) number = 0
-      if (number == size(cycles)) then
-         allocate (longer(2*number))
-         longer(:number) = cycles
-         call move_alloc(longer, cycles)
-      end if
+      if (number == size(cycles)) cycles = [cycles, cycles]
       number = number + 1
       cycles(number) = cycle
    end subroutine append_cycle

@@ -255,26 +255,14 @@ contains
    pure function zones_of(inside) result(zones)
       logical, intent(in) :: inside(:)
       type(zone_type), allocatable :: zones(:)
-      logical :: before
-      integer :: i, number
+      logical :: begins(size(inside)), ends(size(inside))
+      integer :: i
 
-      number = 0
-      before = .false.
-      do i = 1, size(inside)
-         if (inside(i) .and. .not. before) number = number + 1
-         before = inside(i)
-      end do
-      allocate (zones(number))
-      number = 0
-      before = .false.
-      do i = 1, size(inside)
-         if (inside(i) .and. .not. before) then
-            number = number + 1
-            zones(number)%first = i
-         end if
-         if (inside(i)) zones(number)%last = i
-         before = inside(i)
-      end do
+      begins = inside .and. .not. eoshift(inside, -1)
+      ends = inside .and. .not. eoshift(inside, 1)
+      allocate (zones(count(begins)))
+      zones%first = pack([(i, i=1, size(inside))], begins)
+      zones%last = pack([(i, i=1, size(inside))], ends)
    end function zones_of
 
    !> Edge of a contact patch on `side` (-1 left, 1 right), arc length from the origin of x, and its uncertainty, length.

@@ -30,7 +30,7 @@ module mfv_history
 
 contains
 
-   !> Append a record of `state` after an event (`kind`, first `node`, `count` nodes).
+   !> Append a record of `state` after an event (`kind`, first `node`, `count` nodes). The list doubles when full.
    subroutine append(self, state, kind, node, count, step, linear_solves)
       class(history_type), intent(inout) :: self
       type(contact_state_type), intent(in) :: state
@@ -38,21 +38,12 @@ contains
       integer, parameter :: first_capacity = 64
 
       if (.not. allocated(self%record)) allocate (self%record(first_capacity))
-      if (self%records == size(self%record)) call double_capacity(self)
+      if (self%records == size(self%record)) self%record = [self%record, self%record]
       self%records = self%records + 1
       self%record(self%records) = history_record_type( &
                                   state%fields%motion, state%fields%force, state%dissipation, state%contact_nodes(), &
                                   state%stick_nodes(), kind, node, count, step, linear_solves)
    end subroutine append
-
-   subroutine double_capacity(self)
-      class(history_type), intent(inout) :: self
-      type(history_record_type), allocatable :: wider(:)
-
-      allocate (wider(2*size(self%record)))
-      wider(:self%records) = self%record(:self%records)
-      call move_alloc(wider, self%record)
-   end subroutine double_capacity
 
    !> Renumber the nodes after `extra` nodes were added before the first one.
    subroutine move_nodes(self, extra)

@@ -510,26 +510,19 @@ contains
       class(krylov_system_type), intent(in) :: self
       real(wp), intent(in) :: motion(motion_count)
       real(wp), intent(out) :: rows(:)
-      integer :: i, j, m, s
+      integer :: i, m, s
 
       m = size(self%contact)
       s = size(self%held)
-      do i = 1, m
-         rows(i) = self%normal(self%contact(i))
-      end do
-      do i = 1, s
-         j = self%held(i)
-         rows(m + i) = self%tangential(j) + self%softness(i)*(self%shear(j) - self%held_slope(i)*self%pressure(j))
-      end do
-      do j = 1, size(motion)
-         if (.not. abs(motion(j)) > 0.0_wp) cycle
-         do i = 1, m
-            rows(i) = rows(i) - self%normal_arm(self%contact(i), j)*motion(j)
+      associate (held => self%held)
+         rows(:m) = self%normal(self%contact)
+         rows(m + 1:m + s) = self%tangential(held) + self%softness*(self%shear(held) - self%held_slope*self%pressure(held))
+         do i = 1, motion_count
+            if (.not. abs(motion(i)) > 0.0_wp) cycle
+            rows(:m) = rows(:m) - self%normal_arm(self%contact, i)*motion(i)
+            rows(m + 1:m + s) = rows(m + 1:m + s) - self%tangential_arm(held, i)*motion(i)
          end do
-         do i = 1, s
-            rows(m + i) = rows(m + i) - self%tangential_arm(self%held(i), j)*motion(j)
-         end do
-      end do
+      end associate
       do i = 1, size(self%free)
          rows(m + s + i) = resultant(self, self%free(i))
       end do
@@ -539,14 +532,10 @@ contains
    pure real(wp) function resultant(self, motion)
       class(krylov_system_type), intent(in) :: self
       integer, intent(in) :: motion
-      integer :: i, j
 
-      resultant = 0.0_wp
-      do i = 1, size(self%contact)
-         j = self%contact(i)
-         resultant = resultant + self%width(j)*(self%normal_arm(j, motion)*self%pressure(j) &
-                                                + self%tangential_arm(j, motion)*self%shear(j))
-      end do
+      associate (c => self%contact)
+         resultant = sum(self%width(c)*(self%normal_arm(c, motion)*self%pressure(c) + self%tangential_arm(c, motion)*self%shear(c)))
+      end associate
    end function resultant
 
    !> Approximate unknowns for the given rows; the free motions satisfy the resultants.

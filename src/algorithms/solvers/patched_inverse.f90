@@ -41,7 +41,7 @@ module mfv_patched_inverse
       !> The inverse of the block of a small group, shape (nodes, nodes); of T^-1(G, G), shape (gaps, gaps).
       real(wp), allocatable :: stored(:, :), of_gaps(:, :)
       !> T^-1 on all nodes between the ends, and work space for it.
-      type(toeplitz_inverse_type) :: inverse
+      type(toeplitz_inverse_type), allocatable :: inverse
       real(wp), allocatable :: work(:), others(:)
       !> Points, shape (points); V, shape (nodes, points); U^T V, shape (points, points).
       integer, allocatable :: points(:)
@@ -214,7 +214,8 @@ contains
       integer :: nearest
 
       nearest = nearest_order(old, length)
-      if (nearest > 0) call group%inverse%move_from(old(nearest)%inverse)
+      if (nearest > 0) call move_alloc(old(nearest)%inverse, group%inverse)
+      if (nearest == 0) allocate (group%inverse)
       if (.not. present(other)) return
       if (.not. allocated(other%groups)) return
       nearest = nearest_order(other%groups, length)
@@ -231,6 +232,7 @@ contains
 
       nearest = 0
       do i = 1, size(groups)
+         if (.not. allocated(groups(i)%inverse)) cycle
          if (groups(i)%inverse%order == 0) cycle
          if (nearest == 0) nearest = i
          if (abs(groups(i)%inverse%order - length) < abs(groups(nearest)%inverse%order - length)) nearest = i
@@ -250,7 +252,7 @@ contains
       call move_alloc(from%points, to%points)
       call move_alloc(from%columns, to%columns)
       call move_alloc(from%products, to%products)
-      call to%inverse%move_from(from%inverse)
+      call move_alloc(from%inverse, to%inverse)
    end subroutine move_group
 
    !> Whether the inverse of a group of some `nodes` on a `length` is stored.
@@ -265,12 +267,14 @@ contains
       type(group_type), intent(inout) :: group
       real(wp), intent(in) :: kernel(:)
       integer, intent(in) :: nodes(:)
+      logical :: is_gap(nodes(1):nodes(size(nodes)))
       integer :: i, length
 
       length = nodes(size(nodes)) - nodes(1) + 1
       allocate (group%nodes, source=nodes)
-      allocate (group%gaps(length - size(nodes)))
-      call find_gaps(nodes, group%gaps)
+      is_gap = .true.
+      is_gap(nodes) = .false.
+      group%gaps = pack([(i, i=nodes(1), nodes(size(nodes)))], is_gap)
       if (is_stored(length, size(nodes))) then
          allocate (group%stored(size(nodes), size(nodes)))
          do i = 1, size(nodes)
@@ -285,21 +289,6 @@ contains
       call group%inverse%entries(group%gaps - nodes(1) + 1, group%of_gaps)
       call invert(group%of_gaps)
    end subroutine set_group
-
-   !> The nodes between the ends of `nodes` that are missing.
-   pure subroutine find_gaps(nodes, gaps)
-      integer, intent(in) :: nodes(:)
-      integer, intent(out) :: gaps(:)
-      integer :: found, i, node
-
-      found = 0
-      do i = 2, size(nodes)
-         do node = nodes(i - 1) + 1, nodes(i) - 1
-            found = found + 1
-            gaps(found) = node
-         end do
-      end do
-   end subroutine find_gaps
 
    !> Invert a symmetric positive definite matrix, or, if round-off spoils this, its diagonal.
    subroutine invert(matrix)

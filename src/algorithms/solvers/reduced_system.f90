@@ -24,7 +24,7 @@ module mfv_reduced_system
    use mfv_contact_system
    use mfv_kinds, only: wp
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, control_force, arm_unit
-   use mfv_node_status, only: node_stick
+   use mfv_node_status, only: in_contact, node_frictionless, node_stick
    implicit none
    private
    public :: reduced_system_type
@@ -203,14 +203,12 @@ contains
       type(constraints_type), intent(in) :: constraints
       logical, intent(in) :: recompute
       logical, intent(out) :: singular
-      logical, parameter :: touches(0:6) = [.false., .true., .true., .true., .true., .true., .true.], &
-                            has_shear(0:6) = [.false., .true., .true., .true., .false., .true., .true.]
       logical :: wanted(size(self%place, 1), a_motion)
       integer :: i
 
       wanted = .false.
-      wanted(:self%nodes, a_pressure) = touches(constraints%status)
-      wanted(:self%nodes, a_shear) = has_shear(constraints%status)
+      wanted(:self%nodes, a_pressure) = in_contact(constraints%status)
+      wanted(:self%nodes, a_shear) = in_contact(constraints%status) .and. constraints%status /= node_frictionless
       wanted(motion_approach, a_motion) = any(wanted(:, a_pressure))
       wanted(motion_shift, a_motion) = any(wanted(:, a_shear))
       ! A motion that only slides (a rotation with radial normals) is determined by friction alone. Bulk stresses are known.
@@ -583,23 +581,14 @@ contains
       type(contact_fields_type), intent(inout) :: fields
       real(wp), parameter :: nothing = 1.0e-14_wp
       real(wp) :: largest, scale
-      integer :: i
 
-      scale = 0.0_wp
-      largest = 0.0_wp
-      do i = 1, size(fields%pressure)
-         scale = max(scale, abs(fields%pressure(i)), abs(fields%shear(i)))
-         if (self%place(i, a_pressure) == 0) then
-            largest = max(largest, abs(fields%pressure(i)))
-            fields%pressure(i) = 0.0_wp
-         end if
-         if (self%place(i, a_shear) == 0) then
-            largest = max(largest, abs(fields%shear(i)))
-            fields%shear(i) = 0.0_wp
-         end if
-      end do
-      if (largest <= nothing*scale) return
-      call model%displace(fields)
+      scale = max(maxval(abs(fields%pressure)), maxval(abs(fields%shear)))
+      associate (has_pressure => self%place(:self%nodes, a_pressure) > 0, has_shear => self%place(:self%nodes, a_shear) > 0)
+         largest = max(maxval(abs(fields%pressure), mask=.not. has_pressure), maxval(abs(fields%shear), mask=.not. has_shear))
+         where (.not. has_pressure) fields%pressure = 0.0_wp
+         where (.not. has_shear) fields%shear = 0.0_wp
+      end associate
+      if (largest > nothing*scale) call model%displace(fields)
    end subroutine clear_open_nodes
 
    !> Residuals of all rows and constraints, in their units, as right sides for a correction; and the largest of them, relative to

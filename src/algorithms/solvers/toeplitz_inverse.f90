@@ -32,7 +32,6 @@ module mfv_toeplitz_inverse
       procedure :: set_order
       procedure :: apply
       procedure :: copy_order
-      procedure :: move_from
       procedure :: entries
    end type toeplitz_inverse_type
 
@@ -73,25 +72,6 @@ contains
       self%error = other%error
       self%length = 0
    end subroutine copy_order
-
-   !> Move an inverse with its storage; the other then has the order 0.
-   subroutine move_from(self, other)
-      class(toeplitz_inverse_type), intent(inout) :: self
-      class(toeplitz_inverse_type), intent(inout) :: other
-
-      self%order = other%order
-      self%error = other%error
-      self%length = other%length
-      call move_alloc(other%predictor, self%predictor)
-      call move_alloc(other%forward, self%forward)
-      call move_alloc(other%backward, self%backward)
-      call move_alloc(other%values, self%values)
-      call move_alloc(other%others, self%others)
-      call move_alloc(other%spectrum, self%spectrum)
-      call move_alloc(other%pairs, self%pairs)
-      other%order = 0
-      other%length = 0
-   end subroutine move_from
 
    !> Entries of the inverse for rows and columns `places`, ascending; shape (places, places). Along a diagonal the formula is a sum
    !> of products.

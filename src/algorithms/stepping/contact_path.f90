@@ -2,7 +2,7 @@
 !> holding undetermined motions, changing statuses, recording.
 module mfv_contact_path
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use mfv_certificate, only: certificate_type, new_certificate
+   use mfv_certificate, only: certificate_type
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: adapt_model, contact_model_type
    use mfv_contact_state, only: contact_state_type, new_contact_state
@@ -161,7 +161,7 @@ contains
       self%state = new_contact_state(model%nodes())
       self%state%fields%motion(motion_approach) = model%nearest_approach(model%initial_gap)
       call model%displace(self%state%fields)
-      self%certificate = new_certificate(model)
+      call self%certificate%find_applicable(model)
       self%record_events = record_events
    end subroutine new_contact_path
 

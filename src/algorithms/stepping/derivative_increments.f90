@@ -5,7 +5,7 @@ module mfv_derivative_increments
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path, only: contact_path_type, iteration_type, segment_type
    use mfv_contact_system
-   use mfv_derivatives, only: derivatives_type, explicit_derivatives, explicit_type, parameter_type
+   use mfv_derivatives, only: explicit_derivatives, explicit_type
    use mfv_error, only: error_type
    use mfv_increment, only: increment_type
    use mfv_kinds, only: wp

@@ -313,7 +313,7 @@ contains
       end associate
    end function most_worn_at_once
 
-   !> Begin the next cycle at the present state, after wear.
+   !> Begin the next cycle at the present state: the first one, or one after wear.
    subroutine restart_cycle(self)
       class(simulation_type), intent(inout) :: self
 
@@ -419,7 +419,7 @@ contains
          if (step%control(i) /= control_keep) call self%contact%begin_motion(i)
       end do
       call set_ends(self, step, self%contact%state)
-      if (step%cycles > 0) call begin_cycles(self, self%leg%cycle)
+      if (step%cycles > 0) call begin_cycles(self)
    end subroutine begin_step
 
    !> The loads at both ends of a step that begins at the state `start`: its targets, and the loads to which its cycles return.
@@ -503,20 +503,18 @@ contains
    end function passed_through
 
    !> Begin the cycles of a step at the present state.
-   subroutine begin_cycles(self, cycle)
+   subroutine begin_cycles(self)
       class(simulation_type), intent(inout) :: self
-      type(cycle_type), intent(out) :: cycle
       integer :: i
 
       do i = 1, mark_count
          self%marks(i)%step = 0
       end do
-      cycle%step = self%steps_done + 1
-      cycle%return = new_turning_point(self%contact%model, self%contact%state, self%slip, self%contact%work, &
-                                       ieee_value(1.0_wp, ieee_quiet_nan))
-      cycle%loading_slip = self%slip
+      self%leg%cycle = cycle_type()
+      self%leg%cycle%step = self%steps_done + 1
+      self%leg%cycle%loading_slip = self%slip
       call set_mark(self, mark_loading, 0)
-      call set_mark(self, mark_return, 0)
+      call restart_cycle(self)
    end subroutine begin_cycles
 
    !> Complete leg `leg` of cycles of `turns` legs. Store its end if it is the farthest of its cycle so far and, after a complete

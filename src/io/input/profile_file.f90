@@ -170,10 +170,7 @@ contains
       character(*), intent(in) :: text
       integer :: i
 
-      lines_of = 1
-      do i = 1, len(text)
-         if (text(i:i) == line_feed) lines_of = lines_of + 1
-      end do
+      lines_of = 1 + count([(text(i:i) == line_feed, i=1, len(text))])
    end function lines_of
 
    !> The line that begins at `first`, without its end (LF or CR LF); `first` moves to the next line.

@@ -14,7 +14,7 @@ module mfv_hdf5_restart
    use mfv_kinds, only: wp
    use mfv_motions, only: motions, motion_count => user_motions, control_keep, control_displacement
    use mfv_node_status, only: node_creep_left, node_open
-   use mfv_result_fields, only: add_real, add_whole, along_nothing, field_type, step_group
+   use mfv_result_fields, only: along_nothing, field_type, list_type, step_group
    use mfv_scene, only: step_type
    use mfv_simulation, only: mark_count, simulation_type, snapshot_type
    use mfv_status, only: MFV_INPUT_ERROR
@@ -37,7 +37,7 @@ module mfv_hdf5_restart
       !> The group, and a prefix of names for several states in one group.
       character(:), allocatable :: group, prefix
       !> Fields to be written.
-      type(field_type), allocatable :: fields(:)
+      type(list_type) :: list
       !> The first error of reading.
       type(error_type), allocatable :: error
    contains
@@ -76,9 +76,9 @@ contains
          call copy%snapshots(i)%state%widen(copy%contact%model%added - simulation%snapshots(i)%added)
       end do
       to_file%group = restart_group
-      allocate (to_file%fields(0))
+      allocate (to_file%list%fields(0))
       call exchange_restart(to_file, copy, nodes)
-      call move_alloc(to_file%fields, fields)
+      call move_alloc(to_file%list%fields, fields)
    end subroutine restart_fields
 
    !> Restore a new simulation from the restart data in `file`. Error MFV_INPUT_ERROR if they are missing, damaged or of another
@@ -352,7 +352,7 @@ contains
          call read_vector(self%file, self%group//'/'//self%prefix//name, size(values), theirs, self%error)
          if (.not. allocated(self%error)) values = theirs
       else
-         call add_real(self%fields, self%prefix//name, values, along_nothing, '1', meaning)
+         call self%list%add(self%prefix//name, values, along_nothing, '1', meaning)
       end if
    end subroutine exchange_reals
 
@@ -377,7 +377,7 @@ contains
       logical :: damaged
 
       if (.not. self%reading) then
-         call add_whole(self%fields, self%prefix//name, values, along_nothing, meaning)
+         call self%list%add(self%prefix//name, values, along_nothing, meaning)
          return
       end if
       numbers = real(values, wp)

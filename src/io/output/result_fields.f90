@@ -28,9 +28,9 @@ module mfv_result_fields
    use mfv_zone_edges, only: find_patches, find_zone_edges, largest_shear, patch_type, zone_edges_type
    implicit none
    private
-   public :: field_type, result_groups, group_fields, field_named, step_group, along_nodes, along_records, &
+   public :: field_type, list_type, result_groups, group_fields, field_named, step_group, along_nodes, along_records, &
              along_companions, along_cycles, along_patches, along_nothing, scale_count, scale_group, scale_name
-   public :: result_attributes, add_real, add_whole
+   public :: result_attributes
 
    !> Dimension along which the values of a field are listed.
    integer, parameter :: along_nothing = 0, along_nodes = 1, along_records = 2, along_companions = 3, along_cycles = 4, &
@@ -49,8 +49,8 @@ module mfv_result_fields
       character(:), allocatable :: flags
    end type field_type
 
-   !> A list of fields. Units are given in terms of length and force, such as force/length^2; the fields have the user's names of
-   !> these two.
+   !> A list of fields, allocated by the caller. Units are given in terms of length and force, such as force/length^2; the fields
+   !> have the user's names of these two.
    type :: list_type
       type(field_type), allocatable :: fields(:)
       character(:), allocatable :: length_unit, force_unit
@@ -867,7 +867,8 @@ contains
       character(:), allocatable :: label
 
       call find_label(list, unit, label)
-      call add_real(list%fields, name, values, along, label, description)
+      call append_field(list%fields, name, along, label, description)
+      list%fields(size(list%fields))%values = values
    end subroutine add_numbers
 
    subroutine add_counts(list, name, values, along, description, flags)
@@ -876,29 +877,10 @@ contains
       integer, intent(in) :: values(:), along
       character(*), intent(in), optional :: flags
 
-      call add_whole(list%fields, name, values, along, description, flags)
+      call append_field(list%fields, name, along, '1', description)
+      list%fields(size(list%fields))%whole = values
+      if (present(flags)) list%fields(size(list%fields))%flags = flags
    end subroutine add_counts
-
-   subroutine add_real(fields, name, values, along, unit, description)
-      type(field_type), allocatable, intent(inout) :: fields(:)
-      character(*), intent(in) :: name, unit, description
-      real(wp), intent(in) :: values(:)
-      integer, intent(in) :: along
-
-      call append_field(fields, name, along, unit, description)
-      fields(size(fields))%values = values
-   end subroutine add_real
-
-   subroutine add_whole(fields, name, values, along, description, flags)
-      type(field_type), allocatable, intent(inout) :: fields(:)
-      character(*), intent(in) :: name, description
-      integer, intent(in) :: values(:), along
-      character(*), intent(in), optional :: flags
-
-      call append_field(fields, name, along, '1', description)
-      fields(size(fields))%whole = values
-      if (present(flags)) fields(size(fields))%flags = flags
-   end subroutine add_whole
 
    !> Append a field without values; by move_alloc, because gfortran leaks components in array constructors.
    subroutine append_field(fields, name, along, unit, description)

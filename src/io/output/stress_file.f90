@@ -10,7 +10,7 @@ module mfv_stress_file
    use mfv_interior
    use mfv_kinds, only: wp
    use mfv_motions, only: motions, bulk_motions
-   use mfv_result_fields, only: add_real, along_nodes, along_nothing, field_type, step_group
+   use mfv_result_fields, only: along_nodes, list_type, step_group
    use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
    use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
    use mfv_strings, only: list_of_words, string_type
@@ -201,7 +201,7 @@ contains
       type(stress_result_type), intent(inout) :: result
       type(error_type), allocatable, intent(out) :: error
       type(writer_type) :: writer
-      type(field_type), allocatable :: fields(:), scales(:)
+      type(list_type) :: fields, scales
       character(:), allocatable :: state
 
       if (.not. allocated(bytes)) then
@@ -219,7 +219,7 @@ contains
       if (writer%code == 0) then
          call remove_group(writer, result%group)
          call collect_fields(case, result, fields, scales)
-         call write_group(writer, result%group, fields, scales)
+         call write_group(writer, result%group, fields%fields, scales%fields)
       end if
       call finish_file(path, 'the stresses', writer, error)
    end subroutine write_stresses
@@ -239,43 +239,39 @@ contains
    subroutine collect_fields(case, result, fields, scales)
       type(case_type), intent(in) :: case
       type(stress_result_type), intent(in) :: result
-      type(field_type), allocatable, intent(out) :: fields(:), scales(:)
+      type(list_type), intent(out) :: fields, scales
+      character(*), parameter :: stress_unit = 'force/length^2'
+      character(len=len(stress_unit)) :: unit
       type(string_type), allocatable :: names(:)
       integer :: along, i
 
-      allocate (fields(0), scales(0))
+      allocate (fields%fields(0), scales%fields(0))
+      fields%length_unit = case%length_unit
+      fields%force_unit = case%force_unit
       along = along_nodes
-      call add_real(fields, 'x', result%x, along_nodes, case%length_unit, 'position to the right of the origin')
+      call fields%add('x', result%x, along_nodes, 'length', 'position to the right of the origin')
       if (allocated(result%depth)) then
          along = along_grid
          scales = fields
-         call add_real(scales, 'depth', result%depth, along_nodes, case%length_unit, 'depth below the surface')
+         call scales%add('depth', result%depth, along_nodes, 'length', 'depth below the surface')
       end if
       names = list_of_words(stress_names)
-      call add_real(fields, 'y', result%y, along, case%length_unit, 'height above the origin')
+      call fields%add('y', result%y, along, 'length', 'height above the origin')
       do i = 1, stress_count
-         call add_real(fields, names(i)%text, result%stress(i, :), along, result%stress_unit, trim(meaning(names(i)%text)))
-         if (names(i)%text == 'principal_angle') fields(size(fields))%unit = '1'
+         unit = stress_unit
+         if (names(i)%text == 'principal_angle') unit = '1'
+         call fields%add(names(i)%text, result%stress(i, :), along, trim(unit), trim(meaning(names(i)%text)))
       end do
-      call add('largest_von_mises', result%largest%value, result%stress_unit, 'largest von Mises stress in the body, by '// &
-               'refinement; NaN where it is unbounded')
-      call add('largest_x', result%largest%x, case%length_unit, 'its position: x')
-      call add('largest_y', result%largest%y, case%length_unit, 'its position: y')
-      call add('largest_tension', result%tension%value, result%stress_unit, 'largest tension along the surface; NaN '// &
-               'where it is singular')
-      call add('tension_x', result%tension%x, case%length_unit, 'its position: x; NaN where there is no tension')
-      call add('tension_y', result%tension%y, case%length_unit, 'its position: y')
-      call add('half_width', result%half_width, case%length_unit, 'half the length of the loaded surface, from edges between nodes')
-      call add('largest_pressure', result%largest_pressure, result%stress_unit, 'largest pressure')
-
-   contains
-
-      subroutine add(name, value, unit, description)
-         character(*), intent(in) :: name, unit, description
-         real(wp), intent(in) :: value
-
-         call add_real(fields, name, [value], along_nothing, unit, description)
-      end subroutine add
+      call fields%add('largest_von_mises', result%largest%value, stress_unit, 'largest von Mises stress in the body, by '// &
+                      'refinement; NaN where it is unbounded')
+      call fields%add('largest_x', result%largest%x, 'length', 'its position: x')
+      call fields%add('largest_y', result%largest%y, 'length', 'its position: y')
+      call fields%add('largest_tension', result%tension%value, stress_unit, 'largest tension along the surface; NaN '// &
+                      'where it is singular')
+      call fields%add('tension_x', result%tension%x, 'length', 'its position: x; NaN where there is no tension')
+      call fields%add('tension_y', result%tension%y, 'length', 'its position: y')
+      call fields%add('half_width', result%half_width, 'length', 'half the length of the loaded surface, from edges between nodes')
+      call fields%add('largest_pressure', result%largest_pressure, stress_unit, 'largest pressure')
    end subroutine collect_fields
 
    !> Description of a stress of stress_names (mfv_interior); padded with blanks.
