@@ -6,9 +6,9 @@ module mfv_error_bar
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: error_bar_type, error_estimate_type, new_error_bar, unresolved_bar, quantity_count, quantity_half_width, &
-             quantity_stick_ratio, quantity_peak_pressure, quantity_peak_shear, quantity_dissipation, quantity_lower_tension, &
-             quantity_upper_tension, lowest_order, highest_order
+   public :: error_bar_type, error_estimate_type, new_error_bar, unresolved_bar, logarithmic_bar, quantity_count, &
+             quantity_half_width, quantity_stick_ratio, quantity_peak_pressure, quantity_peak_shear, quantity_dissipation, &
+             quantity_lower_tension, quantity_upper_tension, lowest_order, highest_order
 
    !> Estimated quantities.
    integer, parameter :: quantity_half_width = 1, quantity_stick_ratio = 2, quantity_peak_pressure = 3, &
@@ -24,7 +24,7 @@ module mfv_error_bar
       !> unit of the quantity.
       real(wp) :: value = 0.0_wp, error = 0.0_wp
       !> Observed order of convergence, between lowest_order and highest_order; lowest_order if the value depends on edges;
-      !> negative without a limit.
+      !> negative, or 0 if it grows as a logarithm, without a limit.
       real(wp) :: order = 0.0_wp
       !> Values on the coarser meshes, finest first.
       real(wp), allocatable :: coarser_values(:)
@@ -94,6 +94,16 @@ contains
       power = log(values(:size(power))/values(2:))/log(real(nodes(:size(power)), wp)/nodes(2:))
       grows = minval(power) > least_growth .and. maxval(power) < min(most_growth, growth_factor*minval(power))
    end function grows
+
+   !> A quantity that grows with the logarithm of the number of intervals. `values`: as above.
+   pure type(error_bar_type) function logarithmic_bar(values) result(bar)
+      real(wp), intent(in) :: values(:)
+
+      bar%known = .true.
+      bar%value = values(1)
+      bar%error = ieee_value(1.0_wp, ieee_positive_inf)
+      bar%coarser_values = values(2:)
+   end function logarithmic_bar
 
    !> A quantity that the coarser meshes do not resolve. `values`: as above.
    pure type(error_bar_type) function unresolved_bar(values) result(bar)

@@ -64,10 +64,11 @@ module mfv_zone_edges
    !> Largest number of nodes to extrapolate from.
    integer, parameter :: most_samples = 7
    real(wp), parameter :: unknown_bend = 1.0e10_wp
-   !> Uncertainty of an edge, intervals (docs/verification.md): at least, of contact and of stick zones; behind a stick zone that
-   !> can have grown, where the exponent is not known; of an edge that cannot be located between nodes, or beside which fewer
-   !> than two nodes slip.
-   real(wp), parameter :: least_error = 0.002_wp, least_stick_error = 0.005_wp, error_if_grown = 0.2_wp, error_if_unknown = 0.5_wp
+   !> Uncertainty of an edge, intervals (docs/verification.md): at least, of contact and of stick zones, and of contact with
+   !> full coupling, where the exponent depends on the friction; behind a stick zone that can have grown, where it is not known;
+   !> of an edge that cannot be located between nodes, or beside which fewer than two nodes slip.
+   real(wp), parameter :: least_error = 0.002_wp, least_stick_error = 0.005_wp, least_coupled_error = 0.02_wp, &
+                          error_if_grown = 0.2_wp, error_if_unknown = 0.5_wp
    !> With coupling, number of slipping nodes next to an edge from which its discretisation error is known.
    integer, parameter :: fewest_slipping = 6
 
@@ -285,6 +286,7 @@ contains
       samples = straightened(samples, merge(patch%right_power, patch%left_power, side > 0))
       edge = model%arc(outermost) + side*model%width(outermost)*refined_distance(samples)
       error = model%width(outermost)*uncertainty(samples)
+      if (model%compliance%elastic_block(block_wt)) error = max(error, least_coupled_error*model%width(outermost))
    end subroutine find_contact_edge
 
    !> Number of neighbouring nodes that slip in one direction, from a node to the left (-1) or right (1).

@@ -193,6 +193,8 @@ contains
             else if (ieee_is_finite(bar%error)) then
                call add_line(text, 'error estimate', value//' +- '//to_text(bar%error, 2)//percent//', order '// &
                              to_text(bar%order, 2))
+            else if (.not. bar%order < 0.0_wp) then
+               call add_line(text, 'error estimate', value//' grows with the logarithm of the nodes: it has no limit')
             else
                call add_line(text, 'error estimate', value//' grows as nodes^'//to_text(-bar%order, 2)// &
                              ' with every finer mesh: it has no limit')
