@@ -31,7 +31,7 @@ module mfv_discretisation_error
    !> total length.
    character(*), parameter :: quantity_names(quantity_count) = &
                               [character(18) :: 'contact_half_width', 'stick_ratio', 'peak_pressure', 'peak_shear', 'dissipation', &
-                                                                                                  'lower_tension', 'upper_tension']
+                                                 'lower_tension', 'upper_tension']
 
 contains
 

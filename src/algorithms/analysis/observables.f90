@@ -39,7 +39,7 @@ module mfv_observables
           row_type('stick_ratio', '1', 'length of the stick zones over that of the contact at the end, from edges between nodes'), &
                                 row_type('peak_pressure', 'force/length^2', 'largest pressure at the end'), &
                                 row_type('peak_shear', 'force/length^2', &
-                                        'largest size of the shear traction at the end, also at stick edges between nodes'), &
+                                         'largest size of the shear traction at the end, also at stick edges between nodes'), &
                                 row_type('cycles', '1', 'whole cycles of the last step that has any'), &
                                 row_type('cycle_dissipation', 'force', 'energy dissipated in the last cycle, per unit thickness'), &
                          row_type('first_cycle_dissipation', 'force', 'energy dissipated in the first cycle, per unit thickness'), &

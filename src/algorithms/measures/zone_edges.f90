@@ -286,7 +286,8 @@ contains
       samples = straightened(samples, merge(patch%right_power, patch%left_power, side > 0))
       edge = model%arc(outermost) + side*model%width(outermost)*refined_distance(samples)
       error = model%width(outermost)*uncertainty(samples)
-      if (model%compliance%elastic_block(block_wt)) error = max(error, least_coupled_error*model%width(outermost))
+      if (model%compliance%elastic_block(block_wt) .and. pressing_shears(model)) &
+         error = max(error, least_coupled_error*model%width(outermost))
    end subroutine find_contact_edge
 
    !> Number of neighbouring nodes that slip in one direction, from a node to the left (-1) or right (1).
@@ -365,15 +366,14 @@ contains
 
    contains
 
-      !> Behind an older stick zone that ended nearby, the remaining friction vanishes twice within a few intervals: if the slip
-      !> disagrees with the traction, it locates the edge.
+      !> Behind an older stick zone that ended nearby, the remaining friction nearly vanishes twice within a few intervals: if the
+      !> slip disagrees with the traction, it locates the edge.
       subroutine correct_by_slip(edge, error)
          real(wp), intent(inout) :: edge, error
          real(wp), parameter :: agreement = 0.35_wp
          real(wp) :: by_slip
 
          if (next == patch_end .or. next + side < patch%first .or. next + side > patch%last) return
-         if (stick_zones_can_grow(model)) return
          by_slip = edge_by_slip(model, state, next, side, edge)
          if (abs(by_slip - edge) <= agreement*model%width(last)) return
          error = max(error, min(abs(by_slip - edge), error_if_unknown*model%width(last)))

@@ -192,7 +192,7 @@ contains
    !> Why a scene cannot be modelled at all, empty if it can. (The readers check much more.)
    pure function fault(self)
       class(scene_type), intent(in) :: self
-      character(:), allocatable :: fault
+      character(len=len(both_rigid)) :: fault
 
       fault = ''
       if (self%lower%rigid .and. self%upper%rigid) fault = both_rigid

@@ -147,7 +147,7 @@ contains
       integer, intent(in), optional :: keep_states
       type(simulation_type) :: self
 
-      self%message = scene%fault()
+      self%message = trim(scene%fault())
       if (self%message /= '') then
          self%outcome = MFV_INPUT_ERROR
          self%contact%model%scene = scene

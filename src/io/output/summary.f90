@@ -167,8 +167,8 @@ contains
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
       character(*), parameter :: words(quantity_count) = [character(21) :: 'contact half-width', 'stick ratio', 'peak pressure', &
-                                                                        'peak shear', 'dissipation', 'tension of lower body', &
-                                                                                                'tension of upper body']
+                                                                             'peak shear', 'dissipation', 'tension of lower body', &
+                                                                                                            'tension of upper body']
       type(field_type), allocatable :: fields(:)
       character(:), allocatable :: meshes, value, percent
       integer :: i
