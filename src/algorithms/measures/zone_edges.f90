@@ -370,10 +370,17 @@ contains
       !> slip disagrees with the traction, it locates the edge.
       subroutine correct_by_slip(edge, error)
          real(wp), intent(inout) :: edge, error
-         real(wp), parameter :: agreement = 0.35_wp
-         real(wp) :: by_slip
+         real(wp), parameter :: agreement = 0.35_wp, straight = 0.3_wp
+         integer :: node, i
+         real(wp) :: by_slip, values(0:2)
 
-         if (next == patch_end .or. next + side < patch%first .or. next + side > patch%last) return
+         if (abs(patch_end - next) < 2) return
+         do i = 0, 2
+            node = next + side*i
+            if (state%status(node) /= state%status(next)) return
+            values(i) = slip_measure(state, node)
+         end do
+         if (abs(values(2) - 2.0_wp*values(1) + values(0)) > straight*(values(1) - values(0))) return
          by_slip = edge_by_slip(model, state, next, side, edge)
          if (abs(by_slip - edge) <= agreement*model%width(last)) return
          error = max(error, min(abs(by_slip - edge), error_if_unknown*model%width(last)))
@@ -462,20 +469,24 @@ contains
       real(wp), intent(in) :: otherwise
       real(wp), parameter :: farthest = 1.5_wp
       real(wp) :: values(0:1), distance
-      integer :: i, node
 
       edge = otherwise
       if (next + side < 1 .or. next + side > size(state%status)) return
       if (state%status(next + side) /= state%status(next)) return
-      do i = 0, 1
-         node = next + side*i
-         values(i) = abs(state%fields%tangential(node) - state%fields%motion(motion_shift) - state%stuck_slip(node)) &
-                     **(2.0_wp/3.0_wp)
-      end do
+      values = [slip_measure(state, next), slip_measure(state, next + side)]
       if (.not. values(1) > values(0)) return
       distance = values(0)/(values(1) - values(0))
       if (distance <= farthest) edge = model%arc(next) - distance*(model%arc(next + side) - model%arc(next))
    end function edge_by_slip
+
+   !> The slip of a node since its last stick to the power 2/3: linear in the distance from the edge of the stick zone.
+   pure real(wp) function slip_measure(state, node)
+      type(contact_state_type), intent(in) :: state
+      integer, intent(in) :: node
+
+      slip_measure = abs(state%fields%tangential(node) - state%fields%motion(motion_shift) - state%stuck_slip(node)) &
+                     **(2.0_wp/3.0_wp)
+   end function slip_measure
 
    !> Tractions raised to the inverse of their exponent, relative to the largest.
    pure type(samples_type) function straightened(samples, power) result(straight)
