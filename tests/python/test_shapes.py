@@ -329,11 +329,25 @@ def test_tension_beside_the_tip_of_a_wedge() -> None:
 
 
 def test_a_datum_inside_the_contact_is_noticed() -> None:
-    """Half-width 1; the default datum is that of the contact, and no warning comes at once."""
+    """Half-width 1; the default datum is that of the contact, and does not lie inside it."""
     steps = [mfv.Step(normal_force=WEDGE_FORCE)]
     wedge = mfv.Body.wedge(ANGLE, rigid=True)
     for datum, noticed in ((None, False), (0.9, False), (0.7, True)):
         keys = {} if datum is None else {"datum": datum}
         lower = mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.3, **keys)
         warnings = mfv.Scene(lower, wedge, steps=steps).run(check=True).attributes["warnings"]
-        assert ("datum" in warnings) == noticed, datum
+        assert ("exceeds the datum" in warnings) == noticed, datum
+
+
+def test_a_datum_that_depends_on_the_case_is_noticed() -> None:
+    """By default the load or the mesh determines it; a key, a disk or a profile has one for all cases."""
+    wedge, disk = mfv.Body.wedge(ANGLE, rigid=True), mfv.Body.disk(20.0, rigid=True)
+    steps, mesh = [mfv.Step(normal_force=WEDGE_FORCE)], mfv.Mesh(half_width=1.5)
+    given = mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.3, datum=2.0)
+    for lower, upper, noticed in ((HALF_PLANE, wedge, True), (given, wedge, False), (HALF_PLANE, disk, False)):
+        warnings = mfv.Scene(lower, upper, steps=steps, mesh=mesh).run(check=True).attributes["warnings"]
+        assert ("give datum" in warnings) == noticed, (lower, upper)
+    with mfv.Scene(HALF_PLANE, wedge, mesh=mesh).contact() as contact:
+        contact.advance(normal_force=WEDGE_FORCE)
+        assert contact["scene/lower_datum"] == 1.5 and contact["scene/lower_datum_of_case"] == 1
+        assert "give datum" in contact.result().attributes["warnings"]

@@ -81,7 +81,8 @@ contains
                     to_text(largest_angle, 2)//' degrees')
    end subroutine check_angle
 
-   !> A datum inside the contact: the compliance of a flat contact of the half-width a is proportional to ln(2 d/a).
+   !> A default datum that another case would not have; and a datum inside the contact: the compliance of a flat contact of the
+   !> half-width a is proportional to ln(2 d/a).
    subroutine check_datum(simulation, scene, warnings)
       type(simulation_type), intent(in) :: simulation
       type(scene_type), intent(in) :: scene
@@ -91,6 +92,10 @@ contains
 
       if (scene%lower%circular() .or. scene%upper%circular() .or. scene%lower%shape == shape_matrix) return
       if (simulation%contact%state%contact_nodes() == 0) return
+      if (scene%lower%datum_of_case .or. scene%upper%datum_of_case) &
+         call add_text(warnings, 'the datum of the displacements, '//to_text(scene%datum(), 4)//', is the half-width of the '// &
+                       'contact at the largest normal_force of this case, or else of its mesh: give datum to compare '// &
+                       'approaches, shifts and stiffnesses with those of other cases')
       associate (arc => simulation%contact%model%arc, touching => in_contact(simulation%contact%state%status))
          half_width = 0.5_wp*(maxval(arc, mask=touching) - minval(arc, mask=touching))
       end associate

@@ -287,6 +287,8 @@ contains
       call list%add(name//'_kolosov_constant', body%material%kolosov, '1', "Kolosov's constant of the "//name//' body')
       call list%add(name//'_datum', body%datum, 'length', 'distance from the origin at which displacements of the '//name// &
                     ' body are measured')
+      call list%add(name//'_datum_of_case', merge(1, 0, body%datum_of_case), 'whether this is a default that depends on '// &
+                    'the loads or the mesh of this case')
    end subroutine add_body
 
    !> Compliance blocks of the scene, and memory of the kernels or matrices.
