@@ -215,6 +215,28 @@ def test_a_steady_cycle_forgets_its_initial_loads() -> None:
     assert np.allclose(found, found[0], rtol=1e-9)
 
 
+def test_a_pad_that_rocks_under_a_constant_shear_walks() -> None:
+    """Its tractions repeat while it moves on: the constant force, times the drift, is what friction dissipates."""
+    elastic: Any = {"youngs_modulus": 115000.0, "poisson_ratio": 0.32}
+    steps = [
+        mfv.Step(normal_force=500.0, friction=False),
+        mfv.Step(tangential_force=150.0, moment=300.0),
+        mfv.Step(moment=-300.0, cycles=20, steady_tolerance=1e-5),
+    ]
+    result = mfv.Scene(
+        mfv.Body.half_plane(**elastic),
+        mfv.Body.rounded_punch(1.0, 100.0, **elastic),
+        mesh=mfv.Mesh(nodes=101),
+        friction=mfv.Friction.coulomb(0.5),
+        steps=steps,
+    ).run(check=True)
+    cycles = result.cycles
+    assert cycles.shift_drift[-1] * 150.0 == pytest.approx(cycles.dissipation[-1], rel=1e-5)
+    assert result.observables.shift_drift == cycles.shift_drift[-1] == pytest.approx(2.2e-4, rel=0.02)
+    assert abs(cycles.rotation_drift[-1]) < 1e-9 and abs(cycles.approach_drift[-1]) < 1e-9
+    assert "cycles but walking" in result.message and result.attributes["warnings"].count("the upper body walks") == 1
+
+
 def test_states_between_the_turning_points_of_a_result() -> None:
     from mfv.load_history import with_states_between
 

@@ -7,7 +7,7 @@ module mfv_observables
    use mfv_cycle, only: cycle_type
    use mfv_interior, only: interior_type
    use mfv_kinds, only: pi, wp
-   use mfv_motions, only: bulk_motions, motions, motion_count => user_motions, motion_approach
+   use mfv_motions, only: bulk_motions, motions, motion_count => user_motions, motion_approach, motion_shift
    use mfv_simulation, only: mark_loading, simulation_type
    use mfv_state_interior, only: state_interior
    use mfv_stress_search, only: largest_tension, largest_type
@@ -24,7 +24,7 @@ module mfv_observables
    end type row_type
 
    !> Number and list of the observables.
-   integer, parameter :: observable_count = 42
+   integer, parameter :: observable_count = 43
    type(row_type), parameter :: observables(observable_count) = [ &
                                 row_type('normal_force', 'force/length', 'normal force P per unit thickness at the end'), &
                                 row_type('tangential_force', 'force/length', 'tangential force Q per unit thickness at the end'), &
@@ -43,6 +43,7 @@ module mfv_observables
                                 row_type('cycle_dissipation', 'force', 'energy dissipated in the last cycle, per unit thickness'), &
                          row_type('first_cycle_dissipation', 'force', 'energy dissipated in the first cycle, per unit thickness'), &
               row_type('cycle_change', '1', 'largest change of a traction over the last cycle, relative to the largest traction'), &
+                   row_type('shift_drift', 'length', 'change of the shift over the last cycle: not 0 where the upper body walks'), &
                           row_type('force_amplitude', 'force/length', 'half the range of the tangential force in the last cycle'), &
                                 row_type('shift_amplitude', 'length', 'half the range of the shift in the last cycle'), &
                   row_type('tangential_stiffness', 'force/length^2', 'tangential force over shift right after the last reversal'), &
@@ -177,6 +178,7 @@ contains
       call put(values, 'cycle_dissipation', cycle%dissipation())
       call put(values, 'first_cycle_dissipation', cycle%first_dissipation)
       call put(values, 'cycle_change', cycle%change)
+      call put(values, 'shift_drift', cycle%drift(motion_shift))
       call put(values, 'force_amplitude', cycle%force_amplitude())
       call put(values, 'shift_amplitude', cycle%shift_amplitude())
       call put(values, 'tangential_stiffness', cycle%return%stiffness_on_leaving)

@@ -4,10 +4,11 @@ module mfv_validity
    use mfv_body, only: body_type, shape_matrix
    use mfv_contact_model, only: needs_equal_intervals
    use mfv_contact_state, only: contact_state_type
+   use mfv_cycle, only: cycle_type
    use mfv_interior, only: interior_type
    use mfv_kinds, only: pi, wp
    use mfv_motions, only: motion_approach, motion_shift, motion_rotation, bulk_motions, &
-                          control_displacement
+                          control_displacement, motions, motion_count => user_motions
    use mfv_node_status, only: in_contact
    use mfv_scene, only: scene_type
    use mfv_simulation, only: simulation_type
@@ -56,6 +57,7 @@ contains
       call check_slip_zones(simulation, warnings)
       call check_order(simulation%contact%model%scene%lower, warnings)
       call check_rotation(simulation, warnings)
+      if (simulation%cycle_count > 0) call check_drift(simulation%cycles(simulation%cycle_count), warnings)
       largest = simulation%contact%certificate%largest()
       if (largest > max(good, simulation%contact%model%scene%method%allowed_residual())) &
          call add_text(warnings, 'the largest relative residual is '//to_text(largest, 2)// &
@@ -132,6 +134,21 @@ contains
          call add_text(warnings, 'the bodies have rolled at a prescribed approach: it refers to the initial '// &
                        'point of contact, and the normal force has grown with the distance; prescribe normal_force instead')
    end subroutine check_rotation
+
+   !> Cycles whose tractions repeat while the upper body moves on.
+   subroutine check_drift(cycle, warnings)
+      type(cycle_type), intent(in) :: cycle
+      type(string_type), allocatable, intent(inout) :: warnings(:)
+      integer :: i
+
+      do i = 1, motion_count
+         if (cycle%walks(i)) &
+            call add_text(warnings, 'the upper body walks: over the last cycle the tractions repeat to '// &
+                          to_text(cycle%change, 1)//' of the largest, but the '//trim(motions(i)%key)//' changes by '// &
+                          to_text(cycle%drift(i), 4)//', and so in every further cycle; /cycles has '//trim(motions(i)%key)// &
+                          '_drift')
+      end do
+   end subroutine check_drift
 
    !> Slip zones with too few nodes: affected quantities and required mesh.
    subroutine check_slip_zones(simulation, warnings)

@@ -56,6 +56,8 @@ module mfv_cycle
       procedure :: slip
       procedure :: dissipation
       procedure :: loop_area
+      procedure :: drift
+      procedure :: walks
       procedure :: force_amplitude
       procedure :: shift_amplitude
       procedure, private :: is_sheared
@@ -129,6 +131,28 @@ contains
                      + 0.5_wp*(from%force(motion) + to%force(motion))*(to%motion(motion) - from%motion(motion))
       end associate
    end function loop_area
+
+   !> Change of a motion over the cycle, in its unit.
+   elemental real(wp) function drift(self, motion)
+      class(cycle_type), intent(in) :: self
+      integer, intent(in) :: motion
+
+      drift = self%return%motion(motion) - self%start%motion(motion)
+   end function drift
+
+   !> Whether the upper body walks: a motion has changed over the cycle although the tractions repeat, and will go on changing.
+   elemental logical function walks(self, motion)
+      class(cycle_type), intent(in) :: self
+      integer, intent(in) :: motion
+      !> Least drift over the range of the motion, and over that change of the tractions; round-off of the motion.
+      real(wp), parameter :: least = 1.0e-3_wp, over_change = 10.0_wp, round_off = 1.0e-9_wp
+      real(wp) :: lowest, highest
+
+      lowest = min(self%lowest_motion(motion), self%start%motion(motion))
+      highest = max(self%highest_motion(motion), self%start%motion(motion))
+      walks = abs(self%drift(motion)) > max(max(least, over_change*self%change)*(highest - lowest), &
+                                            round_off*max(abs(lowest), abs(highest))) .and. .not. motions(motion)%is_known
+   end function walks
 
    !> Dissipated energy per unit thickness: force.
    elemental real(wp) function dissipation(self)

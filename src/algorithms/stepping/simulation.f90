@@ -15,7 +15,8 @@ module mfv_simulation
    use mfv_kinds, only: wp
    use mfv_leap, only: apply_by_large_increments
    use mfv_load_way, only: load_summary_type
-   use mfv_motions, only: motions, motion_count, motion_approach, motion_wear, control_keep, control_force, control_displacement
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_wear, control_keep, &
+                          control_force, control_displacement
    use mfv_node_status, only: event_none, event_step_end, event_stopped, in_contact
    use mfv_observer, only: observer_type
    use mfv_scene
@@ -343,6 +344,8 @@ contains
       self%message = 'step '//to_text(self%steps_done)//' was reached'
       if (step%cycles > cycles) self%message = self%message//', steady after '//to_text(cycles)//' of '// &
                                                to_text(step%cycles)//' cycles'
+      if (step%cycles > cycles .and. self%leg%cycle%walks(motion_shift)) &
+         self%message = self%message//' but walking: each moves the upper body by '//to_text(self%leg%cycle%drift(motion_shift), 4)
       call note_history_checksum(self, step)
    end subroutine end_step
 

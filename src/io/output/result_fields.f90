@@ -609,6 +609,11 @@ contains
                                                               'work of the '//trim(motions(i)%force_name)//' over the cycle: '// &
                                                               'area of its loop, closed by a straight line')
       end do
+      do i = 1, motion_count
+         if (simulation%contact%model%moves(i) .and. .not. motions(i)%is_known) &
+            call list%add(trim(motions(i)%key)//'_drift', c%drift(i), along, trim(motions(i)%unit), 'change of the '// &
+                          trim(motions(i)%key)//' over the cycle: not 0 where the upper body walks although tractions repeat')
+      end do
       call list%add('stick_ratio_lowest', c%lowest_stick_ratio, along, '1', 'lowest stick ratio at a turning point')
       call list%add('stick_ratio_highest', c%highest_stick_ratio, along, '1', 'highest stick ratio at a turning point')
       call list%add('stick_ratio_reversal', c%reversal%edges%stick_ratio(), along, '1', 'stick ratio at the turning point '// &
