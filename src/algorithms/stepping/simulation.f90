@@ -620,8 +620,8 @@ contains
             call differentiate_end(self%contact, self%leg%segment)
          end if
       end if
-      call self%slip%add_segment(self%contact%model, self%leg%start, self%contact%state, self%contact%slip_zone_nodes, &
-                                 self%contact%system%tolerance)
+      call self%slip%add_segment(self%contact%model, self%leg%start, self%contact%state, self%leg%segment%load%rate, &
+                                 self%contact%slip_zone_nodes, self%contact%system%tolerance)
       self%load%control = targets%control
       self%load%value = targets%value
       if (self%keep_history /= history_none) &
