@@ -370,3 +370,22 @@ def test_cycles_that_dissipate_nothing_have_no_slip_zones_to_resolve() -> None:
     ).run(check=True)
     assert abs(result.observables.cycle_dissipation) < 1e-12 * result.observables.dissipation
     assert "not resolved" not in result.attributes["warnings"]
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "wear", "consequence"),
+    [
+        (HALF_PLANE, mfv.Body.disk(10.0, rigid=True), None, "positions along the bodies"),
+        (HALF_PLANE, mfv.Body.disk(10.0, rigid=True), mfv.Wear(coefficient=1.0e-9), "over the contact only"),
+        (mfv.Body.wedge(1.0, shear_modulus=1.0, poisson_ratio=0.3), mfv.Body.disk(10.0, rigid=True), None, "all tractions"),
+    ],
+)
+def test_a_far_slide_is_noticed_after_the_return(lower: mfv.Body, upper: mfv.Body, wear: mfv.Wear | None, consequence: str) -> None:
+    """Half-width 0.13 to 0.19: a slide of 0.1 and back, and of less than a tenth."""
+    for far, noticed in ((0.1, True), (0.011, False)):
+        steps = [Step(normal_force=0.01, friction=False), Step(shift=far), Step(shift=0.0, cycles=2)]
+        scene = mfv.Scene(
+            lower, upper, steps=steps, wear=wear, friction=mfv.Friction.coulomb(0.1), mesh=mfv.Mesh(nodes=61, half_width=0.6)
+        )
+        warnings = scene.run(check=True).attributes["warnings"]
+        assert ("has slid by" in warnings and consequence in warnings) == noticed, warnings

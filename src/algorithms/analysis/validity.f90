@@ -1,7 +1,7 @@
 !> Warnings where the assumptions of the model do not hold.
 module mfv_validity
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use mfv_body, only: body_type, shape_matrix
+   use mfv_body, only: body_type, shape_half_plane, shape_matrix
    use mfv_contact_model, only: needs_equal_intervals
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
@@ -57,6 +57,7 @@ contains
       call check_slip_zones(simulation, warnings)
       call check_order(simulation%contact%model%scene%lower, warnings)
       call check_rotation(simulation, warnings)
+      call check_slide(simulation, simulation%contact%model%scene, warnings)
       if (simulation%cycle_count > 0) call check_drift(simulation%cycles(simulation%cycle_count), warnings)
       largest = simulation%contact%certificate%largest()
       if (largest > max(good, simulation%contact%model%scene%method%allowed_residual())) &
@@ -107,33 +108,54 @@ contains
                        'their forces, or negative; set a larger datum')
    end subroutine check_datum
 
-   !> Rotation is first order: exact for rolling parabolas, otherwise with errors that grow with rolled and slid distance.
+   !> Rotation is first order: exact for rolling parabolas, otherwise with errors that grow with the rolled distance.
    subroutine check_rotation(simulation, warnings)
       type(simulation_type), intent(in) :: simulation
       type(string_type), allocatable, intent(inout) :: warnings(:)
-      real(wp), parameter :: small_error = 1.0e-3_wp, small_slide = 0.1_wp
-      real(wp) :: rolled, slid, half_width, error
+      real(wp), parameter :: small_error = 1.0e-3_wp, small_distance = 0.1_wp
+      real(wp) :: rolled, half_width, error
 
       associate (model => simulation%contact%model, state => simulation%contact%state)
          if (.not. model%moves(motion_rotation) .or. state%contact_nodes() == 0) return
          if (.not. abs(state%fields%motion(motion_rotation)) > 0.0_wp) return
          half_width = 0.5_wp*sum(model%width, mask=in_contact(state%status))
          rolled = model%rolled(state%fields)
-         slid = model%slid(state%fields)
          error = model%rolling_error(state%fields)
       end associate
       if (abs(error) > small_error) &
          call add_text(warnings, 'the contact has rolled by '//to_text(rolled, 3)//': the relative curvature has an error of '// &
                        to_text(100.0_wp*error, 2)//' % and the contact half-width about half of that; roll less far')
       if (simulation%contact%model%scene%mesh%radial) return
-      if (abs(slid) > small_slide*half_width) &
-         call add_text(warnings, 'the upper body has slid by '//to_text(slid, 3)//' along the lower one; '// &
-                       'the model neglects the offset of the surfaces, which must be small compared with '// &
-                       'the contact half-width of '//to_text(half_width, 3))
-      if (simulation%load(motion_approach)%control == control_displacement .and. rolled**2 > small_slide**2*half_width**2) &
+      if (simulation%load(motion_approach)%control == control_displacement .and. rolled**2 > small_distance**2*half_width**2) &
          call add_text(warnings, 'the bodies have rolled at a prescribed approach: it refers to the initial '// &
                        'point of contact, and the normal force has grown with the distance; prescribe normal_force instead')
    end subroutine check_rotation
+
+   !> Sliding: nodes stay opposite each other although the profiles slide over each other. On a straight surface, and between
+   !> parabolas, the contact keeps its tractions and is only displaced; between other profiles the gap changes by the slope times
+   !> the slide. A pin in a bore turns in place.
+   subroutine check_slide(simulation, scene, warnings)
+      type(simulation_type), intent(in) :: simulation
+      type(scene_type), intent(in) :: scene
+      type(string_type), allocatable, intent(inout) :: warnings(:)
+      real(wp), parameter :: small_slide = 0.1_wp
+      character(:), allocatable :: consequence
+
+      associate (slip => simulation%slip)
+         if (scene%mesh%radial .or. .not. slip%farthest > small_slide*slip%half_width) return
+         if (scene%wear%acts()) then
+            consequence = 'both surfaces wear over the contact only, not over the path of the slide'
+         else if (scene%lower%shape == shape_half_plane .or. scene%upper%shape == shape_half_plane .or. &
+                  (scene%lower%circular() .and. scene%upper%circular())) then
+            consequence = 'positions along the bodies, such as those of stresses, are off by up to the slide'
+         else
+            consequence = 'gaps, and with them all tractions, are those before the slide'
+         end if
+         call add_text(warnings, 'the upper body has slid by '//to_text(slip%farthest, 3)//' along the lower one, with a '// &
+                       'contact half-width of '//to_text(slip%half_width, 3)//': the model keeps nodes opposite each other, '// &
+                       'which is right for slides of less than a tenth of the half-width; '//consequence)
+      end associate
+   end subroutine check_slide
 
    !> Cycles whose tractions repeat while the upper body moves on.
    subroutine check_drift(cycle, warnings)

@@ -75,6 +75,8 @@ module mfv_slip_zones
       !> without a node.
       integer :: most_nodes = 0
       real(wp) :: dissipation = 0.0_wp, hidden_width = 0.0_wp, hidden_work = 0.0_wp
+      !> Largest slip of a node in contact and largest contact half-width at the end of a segment, lengths.
+      real(wp) :: farthest = 0.0_wp, half_width = 0.0_wp
    contains
       procedure :: add_segment
       procedure :: since
@@ -125,6 +127,10 @@ contains
       real(wp) :: work, width
 
       if (.not. model%tangential .or. .not. allocated(model%scene%friction%law)) return
+      if (state%contact_nodes() > 0) then
+         self%farthest = max(self%farthest, maxval(abs(state%fields%slip()), mask=in_contact(state%status)))
+         self%half_width = max(self%half_width, 0.5_wp*sum(model%width, mask=in_contact(state%status)))
+      end if
       direction = merge(int(sign(1.0_wp, rates)), 0, abs(rates) > 0.0_wp)
       if (all(direction == 0)) return
       if (any(direction /= self%direction)) call begin_direction(self, direction)
