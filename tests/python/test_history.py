@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scenes import HALF_PLANE, cylinder
+from scenes import HALF_PLANE, PROJECT, cylinder
 from scipy.optimize import brentq
 
 import mfv
@@ -260,3 +260,10 @@ def test_thinned_states_are_whole_cycles() -> None:
         assert len(forces) <= states and forces[-2:] == pytest.approx([-2.0e-4, 2.0e-4])
         assert forces.count(pytest.approx(-2.0e-4)) >= 4
     assert len(thinned(turning, 1).steps) == 1
+
+
+def test_a_drift_that_dies_out_is_no_walk() -> None:
+    """Shakedown: shift and tractions of a coupled contact settle together."""
+    result = mfv.run(PROJECT / "examples/cycles.nml")
+    assert "steady" in result.message and "walk" not in result.message + result.attributes["warnings"]
+    assert abs(result.cycles.shift_drift[-1]) < 1e-4 * abs(result.cycles.shift_drift[0])

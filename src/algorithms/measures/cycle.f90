@@ -140,18 +140,19 @@ contains
       drift = self%return%motion(motion) - self%start%motion(motion)
    end function drift
 
-   !> Whether the upper body walks: a motion has changed over the cycle although the tractions repeat, and will go on changing.
-   elemental logical function walks(self, motion)
+   !> Whether the upper body walks: its shift has changed over the cycle although the tractions repeat, and will go on changing. (They
+   !> determine approach and rotation.)
+   elemental logical function walks(self)
       class(cycle_type), intent(in) :: self
-      integer, intent(in) :: motion
-      !> Least drift over the range of the motion, and over that change of the tractions; round-off of the motion.
-      real(wp), parameter :: least = 1.0e-3_wp, over_change = 10.0_wp, round_off = 1.0e-9_wp
-      real(wp) :: lowest, highest
+      !> Least drift over the range of the shift; over the approach, which is elastic, and the change of the tractions; round-off.
+      real(wp), parameter :: least = 1.0e-3_wp, over_change = 3.0_wp, round_off = 1.0e-9_wp
+      real(wp) :: lowest, highest, elastic
 
-      lowest = min(self%lowest_motion(motion), self%start%motion(motion))
-      highest = max(self%highest_motion(motion), self%start%motion(motion))
-      walks = abs(self%drift(motion)) > max(max(least, over_change*self%change)*(highest - lowest), &
-                                            round_off*max(abs(lowest), abs(highest))) .and. .not. motions(motion)%is_known
+      lowest = min(self%lowest_motion(motion_shift), self%start%motion(motion_shift))
+      highest = max(self%highest_motion(motion_shift), self%start%motion(motion_shift))
+      elastic = max(abs(self%lowest_motion(motion_approach)), abs(self%highest_motion(motion_approach)))
+      walks = abs(self%drift(motion_shift)) > max(least*(highest - lowest), over_change*self%change*elastic, &
+                                                  round_off*max(abs(lowest), abs(highest)))
    end function walks
 
    !> Dissipated energy per unit thickness: force.

@@ -344,7 +344,7 @@ contains
       self%message = 'step '//to_text(self%steps_done)//' was reached'
       if (step%cycles > cycles) self%message = self%message//', steady after '//to_text(cycles)//' of '// &
                                                to_text(step%cycles)//' cycles'
-      if (step%cycles > cycles .and. self%leg%cycle%walks(motion_shift)) &
+      if (step%cycles > cycles .and. self%leg%cycle%walks()) &
          self%message = self%message//' but walking: each moves the upper body by '//to_text(self%leg%cycle%drift(motion_shift), 4)
       call note_history_checksum(self, step)
    end subroutine end_step

@@ -6,7 +6,7 @@ module mfv_summary
    use mfv_error_bar
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
-   use mfv_motions, only: motions, motion_count => user_motions, motion_shift, motion_rotation, bulk_motions
+   use mfv_motions, only: motions, motion_count => user_motions, motion_rotation, bulk_motions
    use mfv_result_fields, only: field_named, field_type, group_fields
    use mfv_simulation, only: simulation_type
    use mfv_status, only: status_outcome
@@ -47,7 +47,7 @@ contains
             call add_line(text, 'dissipation', amount(fields, 'dissipation'))
          end if
          call group_fields(case, simulation, 'observables', seen, observed)
-      if (simulation%cycle_count > 0) call add_last_cycle(text, seen, simulation%cycles(simulation%cycle_count)%walks(motion_shift))
+      if (simulation%cycle_count > 0) call add_last_cycle(text, seen, simulation%cycles(simulation%cycle_count)%walks())
          do i = 1, motion_count
             if (.not. (motions(i)%optional .and. model%moves(i))) cycle
             if (motions(i)%is_stress) then
