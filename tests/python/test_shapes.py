@@ -389,3 +389,26 @@ def test_a_far_slide_is_noticed_after_the_return(lower: mfv.Body, upper: mfv.Bod
         )
         warnings = scene.run(check=True).attributes["warnings"]
         assert ("has slid by" in warnings and consequence in warnings) == noticed, warnings
+
+
+def test_a_narrow_slip_zone_at_one_edge_is_noticed_beside_a_wide_one() -> None:
+    """A bulk stress made the right edge slip back over 2 nodes of 140, and the tension there is twice that of fine meshes."""
+    cycle = {"tangential_force": 6.5888e-5, "lower_bulk_stress": 2.49727e-4}
+    tensions = {}
+    for nodes, noticed in ((140, True), (420, False), (840, False)):
+        result = mfv.Scene(
+            mfv.Body.half_plane(youngs_modulus=0.69003, poisson_ratio=0.33),
+            mfv.Body.disk(162.0835, youngs_modulus=4.81374, poisson_ratio=0.4),
+            coupling="none",
+            mesh=mfv.Mesh(nodes=nodes, half_width=1.6),
+            friction=mfv.Friction.coulomb(0.2873456),
+            steps=[
+                Step(normal_force=0.00206331),
+                Step(tangential_force=-3.49079e-4, lower_bulk_stress=-2.49727e-4),
+                Step(cycles=2, **cycle),
+            ],
+        ).run(check=True)
+        assert ("tension at the right edge" in result.attributes["warnings"]) == noticed, nodes
+        tensions[nodes] = float(result.observables.lower_tension)
+    assert tensions[420] == pytest.approx(tensions[840], rel=0.01)
+    assert tensions[140] > 1.5 * tensions[840]

@@ -5,14 +5,14 @@ module mfv_validity
    use mfv_contact_model, only: needs_equal_intervals
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
-   use mfv_interior, only: interior_type
+   use mfv_interior, only: has_interior, interior_type
    use mfv_kinds, only: pi, wp
    use mfv_motions, only: motion_approach, motion_shift, motion_rotation, bulk_motions, &
-                          control_displacement, motions, motion_count => user_motions
+                          control_displacement
    use mfv_node_status, only: in_contact
    use mfv_scene, only: scene_type
    use mfv_simulation, only: simulation_type
-   use mfv_slip_zones, only: contact_interval, needed_mesh, resolved_nodes, slip_record_type
+   use mfv_slip_zones, only: contact_interval, needed_mesh, resolved_nodes, slip_record_type, nodes_at_edge
    use mfv_state_interior, only: state_interior
    use mfv_stress_search, only: largest_type, largest_von_mises
    use mfv_strings, only: add_text, string_type, to_text
@@ -184,6 +184,10 @@ contains
       ! The tension behind a contact grows with the root of its slip zone; a matrix has no interior.
       call add_zones(simulation%slip, trim(merge('stick_ratio, peak_shear         ', 'stick_ratio, peak_shear, tension', &
                                                  simulation%contact%model%scene%lower%shape == shape_matrix)))
+      if (.not. simulation%slip%is_coarse_now(interval)) then
+         call add_edge(-1, 'left')
+         call add_edge(1, 'right')
+      end if
       if (simulation%cycle_count > 0) then
          associate (cycle => simulation%cycles(simulation%cycle_count))
             call add_work(cycle%slip(), 'cycle_dissipation, loss_factor, nonlinear_shift')
@@ -219,6 +223,24 @@ contains
 
          if (slip%is_coarse_now(interval)) call add(quantities, slip%nodes_now, slip%width_now)
       end subroutine add_zones
+
+      !> A slip zone at an edge with too few nodes although the widest one is resolved. A traction that points from the edge into
+      !> the contact causes tension outside.
+      subroutine add_edge(side, name)
+         integer, intent(in) :: side
+         character(*), intent(in) :: name
+         integer :: zone, edge
+
+         associate (model => simulation%contact%model, state => simulation%contact%state)
+            zone = nodes_at_edge(model, state, side)
+            if (zone == 0 .or. zone >= resolved_nodes) return
+            edge = findloc(in_contact(state%status), .true., dim=1, back=side > 0)
+            associate (scene => model%scene)
+               if (.not. merge(has_interior(scene%lower), has_interior(scene%upper), side*state%fields%shear(edge) < 0.0_wp)) return
+            end associate
+            call add('tension at the '//name//' edge', zone, zone*model%width(edge))
+         end associate
+      end subroutine add_edge
 
       subroutine add(quantities, its_nodes, its_width)
          character(*), intent(in) :: quantities

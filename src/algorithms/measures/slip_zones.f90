@@ -20,7 +20,7 @@ module mfv_slip_zones
    use mfv_zone_edges, only: ends_with_body, find_zone_edges, zone_edges_type, zone_type, zones_of
    implicit none
    private
-   public :: slip_record_type, segment_start_type, widest_slip_zone, resolved_nodes, needed_mesh, &
+   public :: slip_record_type, segment_start_type, widest_slip_zone, nodes_at_edge, resolved_nodes, needed_mesh, &
              contact_interval, largest_resolved_error
 
    !> Nodes of a resolved slip zone.
@@ -113,6 +113,36 @@ contains
          if (node >= 1 .and. node <= size(status)) holds_at = holds(status(node))
       end function holds_at
    end function widest_slip_zone
+
+   !> Number of nodes at the left (`side` -1) or right (1) edge of a contact of one patch that slip next to sticking ones, or that have
+   !> slipped against the shear traction of the nodes further in; the smaller number, 0 without such nodes.
+   pure integer function nodes_at_edge(model, state, side) result(nodes)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      integer, intent(in) :: side
+      !> Part of the friction limit beyond which a traction is one of slip.
+      real(wp), parameter :: nearly = 0.5_wp
+      type(zone_type), allocatable :: patches(:)
+      integer :: edge, length, slipping, reversed
+      integer, allocatable :: inwards(:)
+      integer :: i
+
+      nodes = 0
+      patches = zones_of(in_contact(state%status))
+      if (size(patches) /= 1) return
+      edge = merge(patches(1)%first, patches(1)%last, side < 0)
+      length = patches(1)%last - patches(1)%first + 1
+      inwards = [(edge - side*i, i=0, length - 1)]
+      slipping = findloc(motion_sign(state%status(inwards)) /= 0, .false., dim=1) - 1
+      if (slipping > 0) then
+         if (holds(state%status(inwards(slipping + 1)))) nodes = slipping
+      end if
+      associate (shear => state%fields%shear(inwards))
+         if (abs(shear(1)) < nearly*model%static_friction(edge)*state%fields%pressure(edge)) return
+         reversed = findloc(shear*shear(1) < 0.0_wp, .true., dim=1) - 1
+      end associate
+      if (reversed > 0) nodes = merge(min(nodes, reversed), reversed, nodes > 0)
+   end function nodes_at_edge
 
    !> Add the load segment from `start` to `state`. `rates`: change of each load; `nodes`: largest number of nodes in a slip zone on
    !> it. `tolerance`: relative tolerance of the linear solver.
