@@ -267,3 +267,21 @@ def test_a_drift_that_dies_out_is_no_walk() -> None:
     result = mfv.run(PROJECT / "examples/cycles.nml")
     assert "steady" in result.message and "walk" not in result.message + result.attributes["warnings"]
     assert abs(result.cycles.shift_drift[-1]) < 1e-4 * abs(result.cycles.shift_drift[0])
+
+
+def test_numbers_of_a_cycle_that_ends_without_a_normal_force_are_omitted() -> None:
+    """Over a normal force that is a rounding error they were 1e15 and more."""
+    elastic: Any = {"youngs_modulus": 70000.0, "poisson_ratio": 0.3}
+    found = (
+        mfv.Scene(
+            mfv.Body.half_plane(**elastic),
+            mfv.Body.disk(20.0, **elastic),
+            friction=mfv.Friction.coulomb(0.3),
+            steps=[mfv.Step(normal_force=100.0)],
+            history=mfv.History(normal_force=[150.0, 80.0, 0.0], tangential_force=[20.0, -10.0, 0.0], cycles=2),
+        )
+        .run(check=True)
+        .observables
+    )
+    assert found.cycle_dissipation > 0.0 and found.stiffness_number > 0.0
+    assert "force_number" not in found and "dissipation_number" not in found

@@ -205,10 +205,13 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(cycle_type), intent(in) :: cycle
       real(wp), intent(inout) :: values(:)
+      !> A normal force below this part of the largest one is none.
+      real(wp), parameter :: round_off = 1.0e-9_wp
       real(wp) :: sliding_limit, force
 
       associate (scene => simulation%contact%model%scene)
          force = cycle%return%force(motion_approach)
+         if (force <= round_off*cycle%highest_force(motion_approach)) force = 0.0_wp
          sliding_limit = scene%friction%static%largest()*force
          if (sliding_limit > 0.0_wp) call put(values, 'force_number', cycle%force_amplitude()/sliding_limit)
          call put(values, 'shift_number', cycle%shift_amplitude()*scene%curvature())
