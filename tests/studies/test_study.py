@@ -294,6 +294,8 @@ def test_what_is_no_study(study):
     for wrong in ({"executor": None}, {"executor": 4}, {"reference": ["full"]}):
         with pytest.raises((TypeError, mfv.errors.InputError)):
             mfv.study(base, {"scene%coupling": ["full"]}, **wrong)
+    with pytest.raises(mfv.errors.InputError, match="give a Scene, such as Scene.from_text\\(text\\)"):
+        mfv.study(BASE.format(nodes=21, cycles=1), {"scene%coupling": ["full"]})
     with pytest.raises(mfv.errors.InputError, match="no base case given"):
         mfv.study([])
     with pytest.raises(mfv.errors.InputError, match="two bases have the name"):

@@ -49,7 +49,7 @@ module mfv_observables
                   row_type('tangential_stiffness', 'force/length^2', 'tangential force over shift right after the last reversal'), &
                   row_type('secant_stiffness', 'force/length^2', 'tangential force over shift from end to end of the last cycle'), &
                                 row_type('loss_factor', '1', &
-                              'cycle_dissipation over 2 pi times the energy of the secant stiffness, at constant P, no rotation'), &
+                                 'area of the loop of tangential force and shift over 2 pi times the energy of secant_stiffness'), &
                                 row_type('stick_ratio_loading', '1', 'stick ratio where the cycles begin'), &
                                 row_type('stick_ratio_reversal', '1', 'stick ratio at the far end of the last cycle'), &
                                 row_type('stick_ratio_return', '1', 'stick ratio at the end of the last cycle'), &

@@ -140,8 +140,8 @@ contains
       drift = self%return%motion(motion) - self%start%motion(motion)
    end function drift
 
-   !> Whether the upper body walks: its shift has changed over the cycle although the tractions repeat, and will go on changing. (They
-   !> determine approach and rotation.)
+   !> Whether the upper body walks: its shift has changed over the cycle although the tractions repeat, and will go on changing.
+   !> (Tractions determine approach and rotation.)
    elemental logical function walks(self)
       class(cycle_type), intent(in) :: self
       !> Least drift over the range of the shift; over the approach, which is elastic, and the change of the tractions; round-off.

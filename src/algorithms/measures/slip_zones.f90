@@ -114,8 +114,8 @@ contains
       end function holds_at
    end function widest_slip_zone
 
-   !> Number of nodes at the left (`side` -1) or right (1) edge of a contact of one patch that slip next to sticking ones, or that have
-   !> slipped against the shear traction of the nodes further in; the smaller number, 0 without such nodes.
+   !> Number of nodes at the left (`side` -1) or right (1) edge of a contact of one patch that slip next to sticking ones, or that
+   !> have slipped against the shear traction of the nodes further in; the smaller number, 0 without such nodes.
    pure integer function nodes_at_edge(model, state, side) result(nodes)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state

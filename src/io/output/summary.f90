@@ -47,7 +47,7 @@ contains
             call add_line(text, 'dissipation', amount(fields, 'dissipation'))
          end if
          call group_fields(case, simulation, 'observables', seen, observed)
-      if (simulation%cycle_count > 0) call add_last_cycle(text, seen, simulation%cycles(simulation%cycle_count)%walks())
+         if (simulation%cycle_count > 0) call add_last_cycle(text, seen, simulation%cycles(simulation%cycle_count)%walks())
          do i = 1, motion_count
             if (.not. (motions(i)%optional .and. model%moves(i))) cycle
             if (motions(i)%is_stress) then
