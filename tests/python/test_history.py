@@ -285,3 +285,33 @@ def test_numbers_of_a_cycle_that_ends_without_a_normal_force_are_omitted() -> No
     )
     assert found.cycle_dissipation > 0.0 and found.stiffness_number > 0.0
     assert "force_number" not in found and "dissipation_number" not in found
+
+
+@pytest.mark.parametrize("separates", [False, True])
+def test_areas_by_large_increments_are_accurate_or_unknown(separates: bool) -> None:
+    """The work of P is some thousand times the dissipation; what straight lines miss of either is not known from that of both."""
+    plane: Any = {"youngs_modulus": 0.85230, "poisson_ratio": 0.3}
+    normal, tangential, mu, nodes = [5.96983e-3, 4.68764e-3], [-7.5039e-4, 2.1470e-4], 0.186411, 600
+    if separates:
+        normal, tangential, mu, nodes = [0.0, 5.96983e-3], [0.0, 8.9e-4], 0.5, 601
+
+    def cycles(accuracy: float | None) -> Any:
+        scene = mfv.Scene(
+            mfv.Body.half_plane(**plane),
+            mfv.Body.disk(62.6994, rigid=True) if separates else mfv.Body.disk(62.6994, youngs_modulus=1.20294, poisson_ratio=0.4),
+            plane="stress",
+            friction=mfv.Friction.coulomb(mu),
+            mesh=mfv.Mesh(nodes=nodes, half_width=None if separates else 1.6),
+            solver=mfv.Solver(accuracy=accuracy),
+            steps=[mfv.Step(normal_force=max(normal)), *([] if separates else [mfv.Step(tangential_force=tangential[0])])],
+            history=mfv.History(normal_force=normal[::-1], tangential_force=tangential[::-1], cycles=2),
+            output=mfv.Output(history="none"),
+        )
+        return scene.run(check=True).cycles
+
+    exact, quick = cycles(None), cycles(1.0e-2)
+    assert quick.dissipation[-1] == pytest.approx(exact.dissipation[-1], rel=1e-2)
+    assert np.isnan(quick.loss_factor[-1]) == np.isnan(quick.normal_force_work[-1]) == separates
+    if not separates:
+        assert quick.loss_factor[-1] == pytest.approx(exact.loss_factor[-1], rel=1e-2)
+        assert quick.normal_force_work[-1] == pytest.approx(exact.normal_force_work[-1], abs=1e-2 * exact.dissipation[-1])

@@ -24,8 +24,8 @@ module mfv_cycle
       real(wp) :: stiffness_on_leaving = 0.0_wp
       !> See contact_model_type.
       real(wp) :: largest_stiffness = 0.0_wp
-      !> Work of the forces so far, see contact_path_type.
-      real(wp) :: work(motion_count) = 0.0_wp
+      !> Work of the forces so far, and its estimated error over the accuracy, see path_position_type.
+      real(wp) :: work(motion_count) = 0.0_wp, work_error = 0.0_wp
    contains
       procedure :: distance
    end type turning_point_type
@@ -68,12 +68,12 @@ module mfv_cycle
 
 contains
 
-   !> Turning point from a state. `slip`, `work`, `stiffness`: see turning_point_type.
-   type(turning_point_type) function new_turning_point(model, state, slip, work, stiffness) result(point)
+   !> Turning point from a state. `slip`, `work`, `work_error`, `stiffness`: see turning_point_type.
+   type(turning_point_type) function new_turning_point(model, state, slip, work, work_error, stiffness) result(point)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       type(slip_record_type), intent(in) :: slip
-      real(wp), intent(in) :: work(motion_count), stiffness
+      real(wp), intent(in) :: work(motion_count), work_error, stiffness
 
       point%force = state%fields%force
       point%motion = state%fields%motion
@@ -82,6 +82,7 @@ contains
       point%slip = slip
       point%stiffness_on_leaving = stiffness
       point%work = work
+      point%work_error = work_error
       call find_zone_edges(model, state, point%edges)
    end function new_turning_point
 
@@ -121,11 +122,13 @@ contains
    end subroutine add_point
 
    !> Work of the force of a motion over the cycle, per unit thickness: force. It is the area of the loop of force and motion; an
-   !> open loop is closed by a straight line.
+   !> open loop is closed by a straight line. NaN if large increments do not know it to the accuracy.
    elemental real(wp) function loop_area(self, motion)
       class(cycle_type), intent(in) :: self
       integer, intent(in) :: motion
 
+      loop_area = ieee_value(1.0_wp, ieee_quiet_nan)
+      if (self%return%work_error - self%start%work_error > max(self%dissipation(), 0.0_wp)) return
       associate (from => self%return, to => self%start)
          loop_area = (from%work(motion) - to%work(motion)) &
                      + 0.5_wp*(from%force(motion) + to%force(motion))*(to%motion(motion) - from%motion(motion))

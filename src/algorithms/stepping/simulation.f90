@@ -309,8 +309,7 @@ contains
    subroutine restart_cycle(self)
       class(simulation_type), intent(inout) :: self
 
-      self%leg%cycle%return = new_turning_point(self%contact%model, self%contact%state, self%slip, self%contact%work, &
-                                                ieee_value(1.0_wp, ieee_quiet_nan))
+      self%leg%cycle%return = turning_point_here(self, ieee_value(1.0_wp, ieee_quiet_nan))
       call set_mark(self, mark_return, self%leg%number - 1)
    end subroutine restart_cycle
 
@@ -506,12 +505,21 @@ contains
          self%marks(i)%step = 0
       end do
       cycle%step = self%steps_done + 1
-      cycle%return = new_turning_point(self%contact%model, self%contact%state, self%slip, self%contact%work, &
-                                       ieee_value(1.0_wp, ieee_quiet_nan))
+      cycle%return = turning_point_here(self, ieee_value(1.0_wp, ieee_quiet_nan))
       cycle%loading_slip = self%slip
       call set_mark(self, mark_loading, 0)
       call set_mark(self, mark_return, 0)
    end subroutine begin_cycles
+
+   !> The present state as a turning point. `stiffness`: see turning_point_type.
+   type(turning_point_type) function turning_point_here(self, stiffness) result(point)
+      class(simulation_type), intent(in) :: self
+      real(wp), intent(in) :: stiffness
+
+      associate (contact => self%contact)
+         point = new_turning_point(contact%model, contact%state, self%slip, contact%work, contact%work_error, stiffness)
+      end associate
+   end function turning_point_here
 
    !> Complete leg `leg` of cycles of `turns` legs. Store its end if it is the farthest of its cycle so far and, after a complete
    !> cycle, the cycle.
@@ -523,8 +531,7 @@ contains
       type(turning_point_type) :: point
       logical :: is_farthest
 
-      point = new_turning_point(self%contact%model, self%contact%state, self%slip, self%contact%work, &
-                                self%contact%leaving%stiffness)
+      point = turning_point_here(self, self%contact%leaving%stiffness)
       call cycle%add_point(point, is_first=mod(leg, turns) == 1)
       if (mod(leg, turns) /= 0) then
          is_farthest = mod(leg, turns) == 1
