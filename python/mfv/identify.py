@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ._datum import datums_of, with_datums
 from ._packages import needed
 from .errors import MfvError, input_error
 from .scene import Output, Scene, Step
@@ -514,7 +515,11 @@ class _Problem:
         """Raises InputError."""
         if not free or not loops:
             raise input_error("give at least one loop and one free parameter such as {'friction%mu': 0.5}")
-        self.scene, self.loops, self.rig_stiffness = scene, loops, rig_stiffness
+        pressed = copy.copy(scene)
+        pressed.steps = [*scene.steps, Step(normal_force=max(loop.normal_force for loop in loops))]
+        #: Default datums of wedges and power laws, which otherwise would be those of the normal force of every loop.
+        self.datums = datums_of(pressed)
+        self.scene, self.loops, self.rig_stiffness = with_datums(scene, self.datums), loops, rig_stiffness
         self.axes = {name: value if isinstance(value, Axis) else Axis(name, [value]) for name, value in free.items()}
         self.names = list(free)
         self.start_values = np.array([_start(name, axis) for name, axis in self.axes.items()])
@@ -706,6 +711,11 @@ class _Problem:
             max(jacobian.shape[0] - x.size, 1),
             [],
         )
+        if self.datums:
+            estimate.warnings.append(
+                f"the datum of the displacements, {max(self.datums.values()):.4g}, is the default for the largest normal force of the "
+                f"scene and its loops: {RIG_STIFFNESS} is valid with it only; give datum to compare with other fits"
+            )
         estimate.warnings += self._undetermined(estimate, np.sqrt(np.diag(relative)), lost[:count])
         return estimate
 

@@ -40,6 +40,8 @@ module mfv_body
       real(wp) :: coefficient = 0.0_wp, exponent = 0.0_wp
       !> Elastic bodies: distance from x = 0 to the datum, the surface point where displacements vanish.
       real(wp) :: datum = 0.0_wp
+      !> Whether this is a default that depends on the loads or on the mesh, not on the shapes.
+      logical :: datum_of_case = .false.
       !> Elastic bodies: yield strength, force/length^2; 0: unknown.
       real(wp) :: yield_strength = 0.0_wp
       !> Elastic disk and hole: kernel and harmonics, see mfv_circle.

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scenes import HALF_PLANE, cylinder
+from scenes import HALF_PLANE, PROJECT, cylinder
 from scipy.optimize import brentq
 
 import mfv
@@ -215,6 +215,28 @@ def test_a_steady_cycle_forgets_its_initial_loads() -> None:
     assert np.allclose(found, found[0], rtol=1e-9)
 
 
+def test_a_pad_that_rocks_under_a_constant_shear_walks() -> None:
+    """Its tractions repeat while it moves on: the constant force, times the drift, is what friction dissipates."""
+    elastic: Any = {"youngs_modulus": 115000.0, "poisson_ratio": 0.32}
+    steps = [
+        mfv.Step(normal_force=500.0, friction=False),
+        mfv.Step(tangential_force=150.0, moment=300.0),
+        mfv.Step(moment=-300.0, cycles=20, steady_tolerance=1e-5),
+    ]
+    result = mfv.Scene(
+        mfv.Body.half_plane(**elastic),
+        mfv.Body.rounded_punch(1.0, 100.0, **elastic),
+        mesh=mfv.Mesh(nodes=101),
+        friction=mfv.Friction.coulomb(0.5),
+        steps=steps,
+    ).run(check=True)
+    cycles = result.cycles
+    assert cycles.shift_drift[-1] * 150.0 == pytest.approx(cycles.dissipation[-1], rel=1e-5)
+    assert result.observables.shift_drift == cycles.shift_drift[-1] == pytest.approx(2.2e-4, rel=0.02)
+    assert abs(cycles.rotation_drift[-1]) < 1e-9 and abs(cycles.approach_drift[-1]) < 1e-9
+    assert "cycles but walking" in result.message and result.attributes["warnings"].count("the upper body walks") == 1
+
+
 def test_states_between_the_turning_points_of_a_result() -> None:
     from mfv.load_history import with_states_between
 
@@ -238,3 +260,58 @@ def test_thinned_states_are_whole_cycles() -> None:
         assert len(forces) <= states and forces[-2:] == pytest.approx([-2.0e-4, 2.0e-4])
         assert forces.count(pytest.approx(-2.0e-4)) >= 4
     assert len(thinned(turning, 1).steps) == 1
+
+
+def test_a_drift_that_dies_out_is_no_walk() -> None:
+    """Shakedown: shift and tractions of a coupled contact settle together."""
+    result = mfv.run(PROJECT / "examples/cycles.nml")
+    assert "steady" in result.message and "walk" not in result.message + result.attributes["warnings"]
+    assert abs(result.cycles.shift_drift[-1]) < 1e-4 * abs(result.cycles.shift_drift[0])
+
+
+def test_numbers_of_a_cycle_that_ends_without_a_normal_force_are_omitted() -> None:
+    """Over a normal force that is a rounding error they were 1e15 and more."""
+    elastic: Any = {"youngs_modulus": 70000.0, "poisson_ratio": 0.3}
+    found = (
+        mfv.Scene(
+            mfv.Body.half_plane(**elastic),
+            mfv.Body.disk(20.0, **elastic),
+            friction=mfv.Friction.coulomb(0.3),
+            steps=[mfv.Step(normal_force=100.0)],
+            history=mfv.History(normal_force=[150.0, 80.0, 0.0], tangential_force=[20.0, -10.0, 0.0], cycles=2),
+        )
+        .run(check=True)
+        .observables
+    )
+    assert found.cycle_dissipation > 0.0 and found.stiffness_number > 0.0
+    assert "force_number" not in found and "dissipation_number" not in found
+
+
+@pytest.mark.parametrize("separates", [False, True])
+def test_areas_by_large_increments_are_accurate_or_unknown(separates: bool) -> None:
+    """The work of P is some thousand times the dissipation; what straight lines miss of either is not known from that of both."""
+    plane: Any = {"youngs_modulus": 0.85230, "poisson_ratio": 0.3}
+    normal, tangential, mu, nodes = [5.96983e-3, 4.68764e-3], [-7.5039e-4, 2.1470e-4], 0.186411, 600
+    if separates:
+        normal, tangential, mu, nodes = [0.0, 5.96983e-3], [0.0, 8.9e-4], 0.5, 601
+
+    def cycles(accuracy: float | None) -> Any:
+        scene = mfv.Scene(
+            mfv.Body.half_plane(**plane),
+            mfv.Body.disk(62.6994, rigid=True) if separates else mfv.Body.disk(62.6994, youngs_modulus=1.20294, poisson_ratio=0.4),
+            plane="stress",
+            friction=mfv.Friction.coulomb(mu),
+            mesh=mfv.Mesh(nodes=nodes, half_width=None if separates else 1.6),
+            solver=mfv.Solver(accuracy=accuracy),
+            steps=[mfv.Step(normal_force=max(normal)), *([] if separates else [mfv.Step(tangential_force=tangential[0])])],
+            history=mfv.History(normal_force=normal[::-1], tangential_force=tangential[::-1], cycles=2),
+            output=mfv.Output(history="none"),
+        )
+        return scene.run(check=True).cycles
+
+    exact, quick = cycles(None), cycles(1.0e-2)
+    assert quick.dissipation[-1] == pytest.approx(exact.dissipation[-1], rel=1e-2)
+    assert np.isnan(quick.loss_factor[-1]) == np.isnan(quick.normal_force_work[-1]) == separates
+    if not separates:
+        assert quick.loss_factor[-1] == pytest.approx(exact.loss_factor[-1], rel=1e-2)
+        assert quick.normal_force_work[-1] == pytest.approx(exact.normal_force_work[-1], abs=1e-2 * exact.dissipation[-1])

@@ -11,7 +11,7 @@ import pytest
 from scenes import PROJECT
 
 import mfv
-from mfv import Axis, Body, Friction, Mesh, Scene, errors, identify
+from mfv import Axis, Body, Friction, Mesh, Scene, Step, errors, identify
 from mfv.commands import main
 from mfv.identify import Loop
 
@@ -57,6 +57,20 @@ def test_exact_loops_return_the_parameters() -> None:
     gross.shift += 0.123  # any origin
     fitted = identify.fit(cylinders(61), gross, START)
     assert fitted.values == pytest.approx(TRUTH, rel=1e-4)
+
+
+def test_loops_of_different_forces_have_one_datum() -> None:
+    """A power of 2 is a cylinder, up to a spring in series that is the same for all normal forces (its default datum was not)."""
+    loops = []
+    for force in (P, 4.0 * P):
+        planned = Loop.planned(force, 0.6 * MU * force, shift_noise=1.0e-6)
+        loops += identify.simulate(cylinders(), planned, TRUTH)
+    power = cylinders()
+    power.upper = Body.power(0.5 / RADIUS, 2.0, youngs_modulus=E, poisson_ratio=NU)
+    power.mesh, power.steps = Mesh(nodes=61), [Step(normal_force=P)]
+    fitted = identify.fit(power, loops, {"friction%mu": 0.6, "rig_stiffness": 3.0e4})
+    assert fitted.values["friction%mu"] == pytest.approx(MU, rel=1e-3)
+    assert any("give datum" in warning for warning in fitted.warnings)
 
 
 def test_standard_errors_are_those_of_the_closed_form() -> None:

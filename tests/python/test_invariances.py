@@ -33,7 +33,7 @@ NUMBERS = {"first_node", "last_node", "stick_nodes", "slip_nodes"}
 ODD = {
     "tangential_force", "shift", "shear", "slip", "moment", "rotation", "tangential_displacement",
     "upper_tangential_displacement", "contact_centre", "contact_centre_reversal", "contact_centre_return",
-    "patch_shift_loading", "patch_shift_reversal", "patch_shift_return", "creepage",
+    "patch_shift_loading", "patch_shift_reversal", "patch_shift_return", "creepage", "shift_drift", "rotation_drift",
     "lower_tension_x", "upper_tension_x", "contact_edge", "stick_edge",
 }  # fmt: skip
 #: Positions: they change their sign when the picture is turned or mirrored, and move with the contact.
@@ -153,7 +153,7 @@ def strained(seed: int) -> Contact:
 
 def scale_of(name: str, half_width: float, dissipation: float) -> float:
     """Scale of quantities that can be zero by symmetry."""
-    if name in POSITIONS or other_side(name) != name:
+    if name in POSITIONS or other_side(name) != name or name.endswith("_drift"):
         return half_width
     if name.endswith("_work") and name != "friction_work":
         return dissipation

@@ -215,6 +215,16 @@ def test_an_iwan_model_of_a_table_is_exact_at_the_edges_of_its_cells(mindlin: jo
     assert errors[0] > 1.7 * errors[1] > 2.9 * errors[2]
 
 
+def test_a_datum_that_depends_on_the_load_is_refused() -> None:
+    """It would be a spring in series of another stiffness at every normal force."""
+    wedge = scene()
+    wedge.upper, wedge.mesh = Body.wedge(5.0, rigid=True), Mesh(nodes=101)
+    with pytest.raises(ValueError, match="set datum"):
+        joint.measure(wedge)
+    wedge.lower.datum = 100.0
+    assert joint.measure(wedge, [0.5]).sliding_force == pytest.approx(MU * P, rel=1e-6)
+
+
 def test_a_series_spring_is_another_datum(mindlin: joint.Measurement) -> None:
     longer = scene()
     longer.lower.datum = 7.0

@@ -14,7 +14,16 @@ R, MU, P, Q, H = 0.25, 0.7, 1.0e-3, 4.0e-4, 5.0e-4
 STEPS = (mfv.Step(normal_force=P), mfv.Step(tangential_force=Q), mfv.Step(tangential_force=-Q, cycles=2))
 
 #: What is not the physics: work done, round-off, and what the matrix body does not know of its material.
-WORK = ("leaps", "linear_solves", "largest_residual", "cycle_change", "change", "dissipation_number", "stiffness_number")
+WORK = (
+    "leaps",
+    "linear_solves",
+    "largest_residual",
+    "cycle_change",
+    "change",
+    "shift_drift",
+    "dissipation_number",
+    "stiffness_number",
+)
 
 
 def solved(body: mfv.Body, coupling: str, mesh: mfv.Mesh | None = None, steps: tuple[mfv.Step, ...] = STEPS) -> mfv.Result:

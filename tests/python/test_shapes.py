@@ -329,11 +329,86 @@ def test_tension_beside_the_tip_of_a_wedge() -> None:
 
 
 def test_a_datum_inside_the_contact_is_noticed() -> None:
-    """Half-width 1; the default datum is that of the contact, and no warning comes at once."""
+    """Half-width 1; the default datum is that of the contact, and does not lie inside it."""
     steps = [mfv.Step(normal_force=WEDGE_FORCE)]
     wedge = mfv.Body.wedge(ANGLE, rigid=True)
     for datum, noticed in ((None, False), (0.9, False), (0.7, True)):
         keys = {} if datum is None else {"datum": datum}
         lower = mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.3, **keys)
         warnings = mfv.Scene(lower, wedge, steps=steps).run(check=True).attributes["warnings"]
-        assert ("datum" in warnings) == noticed, datum
+        assert ("exceeds the datum" in warnings) == noticed, datum
+
+
+def test_a_datum_that_depends_on_the_case_is_noticed() -> None:
+    """By default the load or the mesh determines it; a key, a disk or a profile has one for all cases."""
+    wedge, disk = mfv.Body.wedge(ANGLE, rigid=True), mfv.Body.disk(20.0, rigid=True)
+    steps, mesh = [mfv.Step(normal_force=WEDGE_FORCE)], mfv.Mesh(half_width=1.5)
+    given = mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.3, datum=2.0)
+    for lower, upper, noticed in ((HALF_PLANE, wedge, True), (given, wedge, False), (HALF_PLANE, disk, False)):
+        warnings = mfv.Scene(lower, upper, steps=steps, mesh=mesh).run(check=True).attributes["warnings"]
+        assert ("give datum" in warnings) == noticed, (lower, upper)
+    with mfv.Scene(HALF_PLANE, wedge, mesh=mesh).contact() as contact:
+        contact.advance(normal_force=WEDGE_FORCE)
+        assert contact["scene/lower_datum"] == 1.5 and contact["scene/lower_datum_of_case"] == 1
+        assert "give datum" in contact.result().attributes["warnings"]
+
+
+def test_cycles_that_dissipate_nothing_have_no_slip_zones_to_resolve() -> None:
+    """A tilted punch slips while it is sheared, not in the smaller cycles: their dissipation is a rounding error."""
+    result = mfv.Scene(
+        mfv.Body.half_plane(youngs_modulus=2.6, poisson_ratio=0.25),
+        mfv.Body.flat_punch(1.0),
+        coupling="goodman",
+        mesh=mfv.Mesh(nodes=145),
+        friction=mfv.Friction.coulomb(0.005),
+        steps=[
+            Step(normal_force=0.026, friction=False),
+            Step(rotation=-0.001),
+            Step(force_ratio=0.3),
+            Step(force_ratio=0.15, cycles=1),
+        ],
+    ).run(check=True)
+    assert abs(result.observables.cycle_dissipation) < 1e-12 * result.observables.dissipation
+    assert "not resolved" not in result.attributes["warnings"]
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "wear", "consequence"),
+    [
+        (HALF_PLANE, mfv.Body.disk(10.0, rigid=True), None, "positions along the bodies"),
+        (HALF_PLANE, mfv.Body.disk(10.0, rigid=True), mfv.Wear(coefficient=1.0e-9), "over the contact only"),
+        (mfv.Body.wedge(1.0, shear_modulus=1.0, poisson_ratio=0.3), mfv.Body.disk(10.0, rigid=True), None, "all tractions"),
+    ],
+)
+def test_a_far_slide_is_noticed_after_the_return(lower: mfv.Body, upper: mfv.Body, wear: mfv.Wear | None, consequence: str) -> None:
+    """Half-width 0.13 to 0.19: a slide of 0.1 and back, and of less than a tenth."""
+    for far, noticed in ((0.1, True), (0.011, False)):
+        steps = [Step(normal_force=0.01, friction=False), Step(shift=far), Step(shift=0.0, cycles=2)]
+        scene = mfv.Scene(
+            lower, upper, steps=steps, wear=wear, friction=mfv.Friction.coulomb(0.1), mesh=mfv.Mesh(nodes=61, half_width=0.6)
+        )
+        warnings = scene.run(check=True).attributes["warnings"]
+        assert ("has slid by" in warnings and consequence in warnings) == noticed, warnings
+
+
+def test_a_narrow_slip_zone_at_one_edge_is_noticed_beside_a_wide_one() -> None:
+    """A bulk stress made the right edge slip back over 2 nodes of 140, and the tension there is twice that of fine meshes."""
+    cycle = {"tangential_force": 6.5888e-5, "lower_bulk_stress": 2.49727e-4}
+    tensions = {}
+    for nodes, noticed in ((140, True), (420, False), (840, False)):
+        result = mfv.Scene(
+            mfv.Body.half_plane(youngs_modulus=0.69003, poisson_ratio=0.33),
+            mfv.Body.disk(162.0835, youngs_modulus=4.81374, poisson_ratio=0.4),
+            coupling="none",
+            mesh=mfv.Mesh(nodes=nodes, half_width=1.6),
+            friction=mfv.Friction.coulomb(0.2873456),
+            steps=[
+                Step(normal_force=0.00206331),
+                Step(tangential_force=-3.49079e-4, lower_bulk_stress=-2.49727e-4),
+                Step(cycles=2, **cycle),
+            ],
+        ).run(check=True)
+        assert ("tension at the right edge" in result.attributes["warnings"]) == noticed, nodes
+        tensions[nodes] = float(result.observables.lower_tension)
+    assert tensions[420] == pytest.approx(tensions[840], rel=0.01)
+    assert tensions[140] > 1.5 * tensions[840]

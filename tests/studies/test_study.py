@@ -294,6 +294,8 @@ def test_what_is_no_study(study):
     for wrong in ({"executor": None}, {"executor": 4}, {"reference": ["full"]}):
         with pytest.raises((TypeError, mfv.errors.InputError)):
             mfv.study(base, {"scene%coupling": ["full"]}, **wrong)
+    with pytest.raises(mfv.errors.InputError, match="give a Scene, such as Scene.from_text\\(text\\)"):
+        mfv.study(BASE.format(nodes=21, cycles=1), {"scene%coupling": ["full"]})
     with pytest.raises(mfv.errors.InputError, match="no base case given"):
         mfv.study([])
     with pytest.raises(mfv.errors.InputError, match="two bases have the name"):
@@ -449,3 +451,22 @@ def test_files_are_read_back_identical(study, tmp_path):
     assert len(frame) == CASES and list(frame["case"]) == list(range(1, CASES + 1))
     np.testing.assert_array_equal(frame["shift"], flat(table, "shift"))
     np.testing.assert_array_equal(frame["cycle_dissipation"], flat(table, "cycle_dissipation"))
+
+
+def test_cases_have_one_datum():
+    """The approach of a power of 2 over the force: a^2/(2R) [ln(2D/a) + 1/2] with the largest default datum (Johnson 1985)."""
+    lower, upper = mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.3), mfv.Body.power(0.05, 2.0, rigid=True)
+    mesh, forces = mfv.Mesh(nodes=201), np.array([0.005, 0.04, 0.01])
+    half_widths = np.sqrt(4.0 * forces * 10.0 * 0.7 / (2.0 * np.pi))
+
+    def made(point):
+        return mfv.Scene(lower, upper, mesh=mesh, coupling="none", steps=[mfv.Step(normal_force=point["step(1)%normal_force"])])
+
+    expected = mfv.reference.power_approach(half_widths, 0.05, 2.0, half_widths.max())
+    for base in (made, made({"step(1)%normal_force": 0.02})):
+        planned = mfv.Study(base, {"step(1)%normal_force": forces})
+        np.testing.assert_allclose(planned.run().approach, expected, rtol=2e-3)
+        assert "datum" in planned.text(3) and "give datum" not in mfv.run(text=planned.text(3)).attributes["warnings"]
+    given = mfv.study(base, {"step(1)%normal_force": forces[:1], "body(1)%datum": [1.0, 2.0]}).approach.values.ravel()
+    expected = [mfv.reference.power_approach(half_widths[0], 0.05, 2.0, datum) for datum in (1.0, 2.0)]
+    np.testing.assert_allclose(given, expected, rtol=2e-3)

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .._datum import datums_of
 from ..result import Group, Result
 from ..scene import Scene, Step
 from .backbone import Backbone
@@ -94,6 +95,11 @@ def measure(scene: Scene, force_ratios: Sequence[float] = RATIOS, *, repeats: in
     if repeats < 1:
         raise ValueError(f"repeats={repeats}: must be at least 1")
     _check(scene)
+    if datums := datums_of(scene):
+        raise ValueError(
+            "measure needs a datum of the displacements that does not depend on the load, since it is a spring in series with the "
+            f"contact: set datum in the elastic body (the default of this scene, its contact half-width, is {max(datums.values()):.6g})"
+        )
     sheared = copy.deepcopy(scene)
     sheared.output = None
     for ratio in ratios:

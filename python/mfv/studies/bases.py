@@ -10,6 +10,7 @@ from typing import Any, Union
 
 import numpy as np
 
+from ..errors import input_error
 from ..inputs import groups
 from ..inputs import keys as keys_of_text
 from ..scene import _NAMES_OF_DATA, Scene
@@ -37,6 +38,8 @@ def base_of(given: Given) -> Base:
         if not isinstance(given, (str, os.PathLike)):
             raise TypeError(f"must be a mfv.Scene or the path of a case, not {given!r}")
         name = os.fspath(given)
+        if "&" in name and not os.path.exists(name):
+            raise input_error("the base is the text of a case, not its path: give a Scene, such as Scene.from_text(text)")
         return Base(text_of_file(name), name, folder=os.path.dirname(name))
     data = []
     for group, part in given._parts():

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import errors
+from .. import _datum, errors
 from .._library import OBSERVER, library, library_version, text_buffer, text_for, text_of
 from ..case import Case, writing
 from ..result import Field
@@ -131,6 +131,20 @@ def check(base: Base, settings: Sequence[tuple[str, Any]]) -> None:
     """Raises InputError for an invalid case."""
     with scene_handle(base, settings) as handle, _reading(base, settings):
         library().mfv_free(byref(created("mfv_create", handle)))
+
+
+def datums_of_case(base: Base, settings: Sequence[tuple[str, Any]]) -> dict[str, float]:
+    """The datums of a case, by key, that are defaults and depend on its loads or its mesh; none of an invalid case."""
+    texts = [base.text, *(value for _, value in settings if isinstance(value, str))]
+    if not any(shape in text.lower() for shape in _datum.SHAPES for text in texts):
+        return {}
+    try:
+        with scene_handle(base, settings) as scene, _reading(base, settings):
+            handle = created("mfv_create", scene)
+    except errors.InputError:
+        return {}
+    with Case._of_handle(handle) as case:
+        return _datum.datums_of_case(case)
 
 
 def digest(job: Job, base_digest: str) -> str:

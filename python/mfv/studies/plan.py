@@ -32,7 +32,7 @@ from .axes import (
     numbered_group,
 )
 from .bases import Given, absolute, base_of, counts_of_groups, units_of, whole_paths
-from .cases import FILE_KEYS, Base, Job, Solved, case_text, check, digest, digest_of_base, observables
+from .cases import FILE_KEYS, Base, Job, Solved, case_text, check, datums_of_case, digest, digest_of_base, observables
 from .store import Store
 
 if TYPE_CHECKING:
@@ -169,6 +169,12 @@ class Study:
 
     def job(self, number: int) -> Job:
         """Case `number`, ready to be solved. Raises ValueError."""
+        job = self._job_as_given(number)
+        datums = tuple((key, self._datum) for key in datums_of_case(job.base, job.settings))
+        return replace(job, settings=job.settings + datums) if datums else job
+
+    def _job_as_given(self, number: int) -> Job:
+        """Case `number`, perhaps with a default datum that no other case has. Raises ValueError."""
         places = self._places(number)
         settings = [
             setting
@@ -184,6 +190,13 @@ class Study:
             base, shared = self.bases[which], self._shared[which]
         named = {key: absolute(value, base) if key in FILE_KEYS else value for key, value in settings}
         return Job(base, tuple({**shared, **named}.items()), self.wanted_fields, self.reference is not None)
+
+    @functools.cached_property
+    def _datum(self) -> float:
+        """The datum of all cases that would have one of their own loads or mesh: the largest of these, so that none is inside the
+        contact."""
+        jobs = (self._job_as_given(number) for number in range(1, len(self) + 1))
+        return max(datum for job in jobs for datum in datums_of_case(job.base, job.settings).values())
 
     def check(self) -> None:
         """Check every base, and every value with the first values of the others (only some values of long axes).

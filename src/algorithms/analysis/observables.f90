@@ -7,7 +7,7 @@ module mfv_observables
    use mfv_cycle, only: cycle_type
    use mfv_interior, only: interior_type
    use mfv_kinds, only: pi, wp
-   use mfv_motions, only: bulk_motions, motions, motion_count => user_motions, motion_approach
+   use mfv_motions, only: bulk_motions, motions, motion_count => user_motions, motion_approach, motion_shift
    use mfv_simulation, only: mark_loading, simulation_type
    use mfv_state_interior, only: state_interior
    use mfv_stress_search, only: largest_tension, largest_type
@@ -24,7 +24,7 @@ module mfv_observables
    end type row_type
 
    !> Number and list of the observables.
-   integer, parameter :: observable_count = 42
+   integer, parameter :: observable_count = 43
    type(row_type), parameter :: observables(observable_count) = [ &
                                 row_type('normal_force', 'force/length', 'normal force P per unit thickness at the end'), &
                                 row_type('tangential_force', 'force/length', 'tangential force Q per unit thickness at the end'), &
@@ -44,12 +44,13 @@ module mfv_observables
                                 row_type('cycle_dissipation', 'force', 'energy dissipated in the last cycle, per unit thickness'), &
                          row_type('first_cycle_dissipation', 'force', 'energy dissipated in the first cycle, per unit thickness'), &
               row_type('cycle_change', '1', 'largest change of a traction over the last cycle, relative to the largest traction'), &
+                   row_type('shift_drift', 'length', 'change of the shift over the last cycle: not 0 where the upper body walks'), &
                           row_type('force_amplitude', 'force/length', 'half the range of the tangential force in the last cycle'), &
                                 row_type('shift_amplitude', 'length', 'half the range of the shift in the last cycle'), &
                   row_type('tangential_stiffness', 'force/length^2', 'tangential force over shift right after the last reversal'), &
                   row_type('secant_stiffness', 'force/length^2', 'tangential force over shift from end to end of the last cycle'), &
                                 row_type('loss_factor', '1', &
-                              'cycle_dissipation over 2 pi times the energy of the secant stiffness, at constant P, no rotation'), &
+                                 'area of the loop of tangential force and shift over 2 pi times the energy of secant_stiffness'), &
                                 row_type('stick_ratio_loading', '1', 'stick ratio where the cycles begin'), &
                                 row_type('stick_ratio_reversal', '1', 'stick ratio at the far end of the last cycle'), &
                                 row_type('stick_ratio_return', '1', 'stick ratio at the end of the last cycle'), &
@@ -184,6 +185,7 @@ contains
       call put(values, 'cycle_dissipation', cycle%dissipation())
       call put(values, 'first_cycle_dissipation', cycle%first_dissipation)
       call put(values, 'cycle_change', cycle%change)
+      call put(values, 'shift_drift', cycle%drift(motion_shift))
       call put(values, 'force_amplitude', cycle%force_amplitude())
       call put(values, 'shift_amplitude', cycle%shift_amplitude())
       call put(values, 'tangential_stiffness', cycle%return%stiffness_on_leaving)
@@ -210,10 +212,13 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(cycle_type), intent(in) :: cycle
       real(wp), intent(inout) :: values(:)
+      !> A normal force below this part of the largest one is none.
+      real(wp), parameter :: round_off = 1.0e-9_wp
       real(wp) :: sliding_limit, force
 
       associate (scene => simulation%contact%model%scene)
          force = cycle%return%force(motion_approach)
+         if (force <= round_off*cycle%highest_force(motion_approach)) force = 0.0_wp
          sliding_limit = scene%friction%static%largest()*force
          if (sliding_limit > 0.0_wp) call put(values, 'force_number', cycle%force_amplitude()/sliding_limit)
          call put(values, 'shift_number', cycle%shift_amplitude()*scene%curvature())

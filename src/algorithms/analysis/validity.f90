@@ -1,17 +1,18 @@
 !> Warnings where the assumptions of the model do not hold.
 module mfv_validity
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use mfv_body, only: body_type, shape_matrix
+   use mfv_body, only: body_type, shape_half_plane, shape_matrix
    use mfv_contact_model, only: needs_equal_intervals
    use mfv_contact_state, only: contact_state_type
-   use mfv_interior, only: interior_type
+   use mfv_cycle, only: cycle_type
+   use mfv_interior, only: has_interior, interior_type
    use mfv_kinds, only: pi, wp
    use mfv_motions, only: motion_approach, motion_shift, motion_rotation, bulk_motions, &
                           control_displacement
    use mfv_node_status, only: in_contact
    use mfv_scene, only: scene_type
    use mfv_simulation, only: simulation_type
-   use mfv_slip_zones, only: contact_interval, needed_mesh, resolved_nodes, slip_record_type
+   use mfv_slip_zones, only: contact_interval, needed_mesh, resolved_nodes, slip_record_type, nodes_at_edge
    use mfv_state_interior, only: state_interior
    use mfv_stress_search, only: largest_type, largest_von_mises
    use mfv_strings, only: add_text, string_type, to_text
@@ -57,6 +58,8 @@ contains
       call check_order(simulation%contact%model%scene%lower, warnings)
       call check_rotation(simulation, warnings)
       call check_wear(simulation, warnings)
+      call check_slide(simulation, simulation%contact%model%scene, warnings)
+      if (simulation%cycle_count > 0) call check_drift(simulation%cycles(simulation%cycle_count), warnings)
       largest = simulation%contact%certificate%largest()
       if (largest > max(good, simulation%contact%model%scene%method%allowed_residual())) &
          call add_text(warnings, 'the largest relative residual is '//to_text(largest, 2)// &
@@ -82,7 +85,8 @@ contains
                     to_text(largest_angle, 2)//' degrees')
    end subroutine check_angle
 
-   !> A datum inside the contact: the compliance of a flat contact of the half-width a is proportional to ln(2 d/a).
+   !> A default datum that another case would not have; and a datum inside the contact: the compliance of a flat contact of the
+   !> half-width a is proportional to ln(2 d/a).
    subroutine check_datum(simulation, scene, warnings)
       type(simulation_type), intent(in) :: simulation
       type(scene_type), intent(in) :: scene
@@ -92,6 +96,10 @@ contains
 
       if (scene%lower%circular() .or. scene%upper%circular() .or. scene%lower%shape == shape_matrix) return
       if (simulation%contact%state%contact_nodes() == 0) return
+      if (scene%lower%datum_of_case .or. scene%upper%datum_of_case) &
+         call add_text(warnings, 'the datum of the displacements, '//to_text(scene%datum(), 4)//', is the half-width of the '// &
+                       'contact at the largest normal_force of this case, or else of its mesh: give datum to compare '// &
+                       'approaches, shifts and stiffnesses with those of other cases')
       associate (arc => simulation%contact%model%arc, touching => in_contact(simulation%contact%state%status))
          half_width = 0.5_wp*(maxval(arc, mask=touching) - minval(arc, mask=touching))
       end associate
@@ -120,33 +128,65 @@ contains
       end associate
    end subroutine check_wear
 
-   !> Rotation is first order: exact for rolling parabolas, otherwise with errors that grow with rolled and slid distance.
+   !> Rotation is first order: exact for rolling parabolas, otherwise with errors that grow with the rolled distance.
    subroutine check_rotation(simulation, warnings)
       type(simulation_type), intent(in) :: simulation
       type(string_type), allocatable, intent(inout) :: warnings(:)
-      real(wp), parameter :: small_error = 1.0e-3_wp, small_slide = 0.1_wp
-      real(wp) :: rolled, slid, half_width, error
+      real(wp), parameter :: small_error = 1.0e-3_wp, small_distance = 0.1_wp
+      real(wp) :: rolled, half_width, error
 
       associate (model => simulation%contact%model, state => simulation%contact%state)
          if (.not. model%moves(motion_rotation) .or. state%contact_nodes() == 0) return
          if (.not. abs(state%fields%motion(motion_rotation)) > 0.0_wp) return
          half_width = 0.5_wp*sum(model%width, mask=in_contact(state%status))
          rolled = model%rolled(state%fields)
-         slid = model%slid(state%fields)
          error = model%rolling_error(state%fields)
       end associate
       if (abs(error) > small_error) &
          call add_text(warnings, 'the contact has rolled by '//to_text(rolled, 3)//': the relative curvature has an error of '// &
                        to_text(100.0_wp*error, 2)//' % and the contact half-width about half of that; roll less far')
       if (simulation%contact%model%scene%mesh%radial) return
-      if (abs(slid) > small_slide*half_width) &
-         call add_text(warnings, 'the upper body has slid by '//to_text(slid, 3)//' along the lower one; '// &
-                       'the model neglects the offset of the surfaces, which must be small compared with '// &
-                       'the contact half-width of '//to_text(half_width, 3))
-      if (simulation%load(motion_approach)%control == control_displacement .and. rolled**2 > small_slide**2*half_width**2) &
+      if (simulation%load(motion_approach)%control == control_displacement .and. rolled**2 > small_distance**2*half_width**2) &
          call add_text(warnings, 'the bodies have rolled at a prescribed approach: it refers to the initial '// &
                        'point of contact, and the normal force has grown with the distance; prescribe normal_force instead')
    end subroutine check_rotation
+
+   !> Sliding: nodes stay opposite each other although the profiles slide over each other. On a straight surface, and between
+   !> parabolas, the contact keeps its tractions and is only displaced; between other profiles the gap changes by the slope times
+   !> the slide. A pin in a bore turns in place.
+   subroutine check_slide(simulation, scene, warnings)
+      type(simulation_type), intent(in) :: simulation
+      type(scene_type), intent(in) :: scene
+      type(string_type), allocatable, intent(inout) :: warnings(:)
+      real(wp), parameter :: small_slide = 0.1_wp
+      character(:), allocatable :: consequence
+
+      associate (slip => simulation%slip)
+         if (scene%mesh%radial .or. .not. slip%farthest > small_slide*slip%half_width) return
+         if (scene%wear%acts()) then
+            consequence = 'both surfaces wear over the contact only, not over the path of the slide'
+         else if (scene%lower%shape == shape_half_plane .or. scene%upper%shape == shape_half_plane .or. &
+                  (scene%lower%circular() .and. scene%upper%circular())) then
+            consequence = 'positions along the bodies, such as those of stresses, are off by up to the slide'
+         else
+            consequence = 'gaps, and with them all tractions, are those before the slide'
+         end if
+         call add_text(warnings, 'the upper body has slid by '//to_text(slip%farthest, 3)//' along the lower one, with a '// &
+                       'contact half-width of '//to_text(slip%half_width, 3)//': the model keeps nodes opposite each other, '// &
+                       'which is right for slides of less than a tenth of the half-width; '//consequence)
+      end associate
+   end subroutine check_slide
+
+   !> Cycles whose tractions repeat while the upper body moves on.
+   subroutine check_drift(cycle, warnings)
+      type(cycle_type), intent(in) :: cycle
+      type(string_type), allocatable, intent(inout) :: warnings(:)
+
+      if (cycle%walks()) &
+         call add_text(warnings, 'the upper body walks: over the last cycle the tractions repeat to '// &
+                       to_text(cycle%change, 1)//' of the largest, but the shift changes by '// &
+                       to_text(cycle%drift(motion_shift), 4)//', and so in every further cycle; /cycles has shift_drift')
+   end subroutine check_drift
 
    !> Slip zones with too few nodes: affected quantities and required mesh.
    subroutine check_slip_zones(simulation, warnings)
@@ -164,6 +204,10 @@ contains
       ! The tension behind a contact grows with the root of its slip zone; a matrix has no interior.
       call add_zones(simulation%slip, trim(merge('stick_ratio, peak_shear         ', 'stick_ratio, peak_shear, tension', &
                                                  simulation%contact%model%scene%lower%shape == shape_matrix)))
+      if (.not. simulation%slip%is_coarse_now(interval)) then
+         call add_edge(-1, 'left')
+         call add_edge(1, 'right')
+      end if
       if (simulation%cycle_count > 0) then
          associate (cycle => simulation%cycles(simulation%cycle_count))
             call add_work(cycle%slip(), 'cycle_dissipation, loss_factor, nonlinear_shift')
@@ -199,6 +243,24 @@ contains
 
          if (slip%is_coarse_now(interval)) call add(quantities, slip%nodes_now, slip%width_now)
       end subroutine add_zones
+
+      !> A slip zone at an edge with too few nodes although the widest one is resolved. A traction that points from the edge into
+      !> the contact causes tension outside.
+      subroutine add_edge(side, name)
+         integer, intent(in) :: side
+         character(*), intent(in) :: name
+         integer :: zone, edge
+
+         associate (model => simulation%contact%model, state => simulation%contact%state)
+            zone = nodes_at_edge(model, state, side)
+            if (zone == 0 .or. zone >= resolved_nodes) return
+            edge = findloc(in_contact(state%status), .true., dim=1, back=side > 0)
+            associate (scene => model%scene)
+               if (.not. merge(has_interior(scene%lower), has_interior(scene%upper), side*state%fields%shear(edge) < 0.0_wp)) return
+            end associate
+            call add('tension at the '//name//' edge', zone, zone*model%width(edge))
+         end associate
+      end subroutine add_edge
 
       subroutine add(quantities, its_nodes, its_width)
          character(*), intent(in) :: quantities

@@ -24,8 +24,8 @@ module mfv_cycle
       real(wp) :: stiffness_on_leaving = 0.0_wp
       !> See contact_model_type.
       real(wp) :: largest_stiffness = 0.0_wp
-      !> Work of the forces so far, see contact_path_type.
-      real(wp) :: work(motion_count) = 0.0_wp
+      !> Work of the forces so far, and its estimated error over the accuracy, see path_position_type.
+      real(wp) :: work(motion_count) = 0.0_wp, work_error = 0.0_wp
    contains
       procedure :: distance
    end type turning_point_type
@@ -56,6 +56,8 @@ module mfv_cycle
       procedure :: slip
       procedure :: dissipation
       procedure :: loop_area
+      procedure :: drift
+      procedure :: walks
       procedure :: force_amplitude
       procedure :: shift_amplitude
       procedure, private :: is_sheared
@@ -66,12 +68,12 @@ module mfv_cycle
 
 contains
 
-   !> Turning point from a state. `slip`, `work`, `stiffness`: see turning_point_type.
-   type(turning_point_type) function new_turning_point(model, state, slip, work, stiffness) result(point)
+   !> Turning point from a state. `slip`, `work`, `work_error`, `stiffness`: see turning_point_type.
+   type(turning_point_type) function new_turning_point(model, state, slip, work, work_error, stiffness) result(point)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       type(slip_record_type), intent(in) :: slip
-      real(wp), intent(in) :: work(motion_count), stiffness
+      real(wp), intent(in) :: work(motion_count), work_error, stiffness
 
       point%force = state%fields%force
       point%motion = state%fields%motion
@@ -80,6 +82,7 @@ contains
       point%slip = slip
       point%stiffness_on_leaving = stiffness
       point%work = work
+      point%work_error = work_error
       call find_zone_edges(model, state, point%edges)
    end function new_turning_point
 
@@ -119,16 +122,41 @@ contains
    end subroutine add_point
 
    !> Work of the force of a motion over the cycle, per unit thickness: force. It is the area of the loop of force and motion; an
-   !> open loop is closed by a straight line.
+   !> open loop is closed by a straight line. NaN if large increments do not know it to the accuracy.
    elemental real(wp) function loop_area(self, motion)
       class(cycle_type), intent(in) :: self
       integer, intent(in) :: motion
 
+      loop_area = ieee_value(1.0_wp, ieee_quiet_nan)
+      if (self%return%work_error - self%start%work_error > max(self%dissipation(), 0.0_wp)) return
       associate (from => self%return, to => self%start)
          loop_area = (from%work(motion) - to%work(motion)) &
                      + 0.5_wp*(from%force(motion) + to%force(motion))*(to%motion(motion) - from%motion(motion))
       end associate
    end function loop_area
+
+   !> Change of a motion over the cycle, in its unit.
+   elemental real(wp) function drift(self, motion)
+      class(cycle_type), intent(in) :: self
+      integer, intent(in) :: motion
+
+      drift = self%return%motion(motion) - self%start%motion(motion)
+   end function drift
+
+   !> Whether the upper body walks: its shift has changed over the cycle although the tractions repeat, and will go on changing.
+   !> (Tractions determine approach and rotation.)
+   elemental logical function walks(self)
+      class(cycle_type), intent(in) :: self
+      !> Least drift over the range of the shift; over the approach, which is elastic, and the change of the tractions; round-off.
+      real(wp), parameter :: least = 1.0e-3_wp, over_change = 3.0_wp, round_off = 1.0e-9_wp
+      real(wp) :: lowest, highest, elastic
+
+      lowest = min(self%lowest_motion(motion_shift), self%start%motion(motion_shift))
+      highest = max(self%highest_motion(motion_shift), self%start%motion(motion_shift))
+      elastic = max(abs(self%lowest_motion(motion_approach)), abs(self%highest_motion(motion_approach)))
+      walks = abs(self%drift(motion_shift)) > max(least*(highest - lowest), over_change*self%change*elastic, &
+                                                  round_off*max(abs(lowest), abs(highest)))
+   end function walks
 
    !> Dissipated energy per unit thickness: force.
    elemental real(wp) function dissipation(self)

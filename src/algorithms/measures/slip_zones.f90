@@ -20,7 +20,7 @@ module mfv_slip_zones
    use mfv_zone_edges, only: ends_with_body, find_zone_edges, zone_edges_type, zone_type, zones_of
    implicit none
    private
-   public :: slip_record_type, segment_start_type, widest_slip_zone, resolved_nodes, needed_mesh, &
+   public :: slip_record_type, segment_start_type, widest_slip_zone, nodes_at_edge, resolved_nodes, needed_mesh, &
              contact_interval, largest_resolved_error
 
    !> Nodes of a resolved slip zone.
@@ -38,6 +38,8 @@ module mfv_slip_zones
    real(wp), parameter :: visible = 0.05_wp, negligible = 1.0e-6_wp
    !> The same for pressing with friction, where slip zones shrink exponentially with mu.
    real(wp), parameter :: negligible_pressing = 1.0e-4_wp
+   !> Widest slip zone without a node, in intervals.
+   real(wp), parameter :: widest_hidden = 1.5_wp
 
    !> State at the start of a load segment.
    type :: segment_start_type
@@ -48,9 +50,8 @@ module mfv_slip_zones
       real(wp), allocatable :: shear(:)
    end type segment_start_type
 
-   !> Record of the slip zones of all load segments so far. All sums: the difference of two records is the record of the
-   !> segments between them.
-   type :: slip_record_type
+   !> Sums over load segments.
+   type :: slip_sums_type
       !> Energy per unit thickness (force): dissipation, with an estimate for slip zones without a node; dissipation of
       !> segments whose slip zones have too few nodes.
       real(wp) :: work = 0.0_wp, coarse_work = 0.0_wp
@@ -58,9 +59,24 @@ module mfv_slip_zones
       real(wp) :: nodes = 0.0_wp, width = 0.0_wp
       !> Sum over all segments of work over squared slip zone width, force/length^2.
       real(wp) :: sharpness = 0.0_wp
+   end type slip_sums_type
+
+   !> Record of the slip zones of all load segments so far. The difference of its sums from those of another record is the sum over
+   !> the segments between them. Successive segments in which all loads go on in their directions count as one, so that a load in
+   !> many increments has the record of a load at once.
+   type, extends(slip_sums_type) :: slip_record_type
       !> Widest slip zone now: its nodes and its width, length. Width 0: none.
       integer :: nodes_now = 0
       real(wp) :: width_now = 0.0_wp
+      !> The sums before the segments that count as one with the last; the direction of each load in them: -1, 0 or 1.
+      type(slip_sums_type) :: before
+      integer :: direction(motion_count) = 0
+      !> Of these segments: most nodes of a slip zone; dissipation, force; width (length) and dissipation (force) of slip zones
+      !> without a node.
+      integer :: most_nodes = 0
+      real(wp) :: dissipation = 0.0_wp, hidden_width = 0.0_wp, hidden_work = 0.0_wp
+      !> Largest slip of a node in contact and largest contact half-width at the end of a segment, lengths.
+      real(wp) :: farthest = 0.0_wp, half_width = 0.0_wp
    contains
       procedure :: add_segment
       procedure :: since
@@ -98,34 +114,104 @@ contains
       end function holds_at
    end function widest_slip_zone
 
-   !> Add the load segment from `start` to `state`. `nodes`: largest number of nodes in a slip zone on it. `tolerance`:
-   !> relative tolerance of the linear solver.
-   subroutine add_segment(self, model, start, state, nodes, tolerance)
+   !> Number of nodes at the left (`side` -1) or right (1) edge of a contact of one patch that slip next to sticking ones, or that
+   !> have slipped against the shear traction of the nodes further in; the smaller number, 0 without such nodes.
+   pure integer function nodes_at_edge(model, state, side) result(nodes)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      integer, intent(in) :: side
+      !> Part of the friction limit beyond which a traction is one of slip.
+      real(wp), parameter :: nearly = 0.5_wp
+      type(zone_type), allocatable :: patches(:)
+      integer :: edge, length, slipping, reversed
+      integer, allocatable :: inwards(:)
+      integer :: i
+
+      nodes = 0
+      patches = zones_of(in_contact(state%status))
+      if (size(patches) /= 1) return
+      edge = merge(patches(1)%first, patches(1)%last, side < 0)
+      length = patches(1)%last - patches(1)%first + 1
+      inwards = [(edge - side*i, i=0, length - 1)]
+      slipping = findloc(motion_sign(state%status(inwards)) /= 0, .false., dim=1) - 1
+      if (slipping > 0) then
+         if (holds(state%status(inwards(slipping + 1)))) nodes = slipping
+      end if
+      associate (shear => state%fields%shear(inwards))
+         if (abs(shear(1)) < nearly*model%static_friction(edge)*state%fields%pressure(edge)) return
+         reversed = findloc(shear*shear(1) < 0.0_wp, .true., dim=1) - 1
+      end associate
+      if (reversed > 0) nodes = merge(min(nodes, reversed), reversed, nodes > 0)
+   end function nodes_at_edge
+
+   !> Add the load segment from `start` to `state`. `rates`: change of each load; `nodes`: largest number of nodes in a slip zone on
+   !> it. `tolerance`: relative tolerance of the linear solver.
+   subroutine add_segment(self, model, start, state, rates, nodes, tolerance)
       class(slip_record_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(segment_start_type), intent(in) :: start
       type(contact_state_type), intent(in) :: state
+      real(wp), intent(in) :: rates(motion_count), tolerance
       integer, intent(in) :: nodes
-      real(wp), intent(in) :: tolerance
+      integer :: direction(motion_count)
       real(wp) :: work, width
 
       if (.not. model%tangential .or. .not. allocated(model%scene%friction%law)) return
-      if (nodes == 0) then
+      if (state%contact_nodes() > 0) then
+         self%farthest = max(self%farthest, maxval(abs(state%fields%slip()), mask=in_contact(state%status)))
+         self%half_width = max(self%half_width, 0.5_wp*sum(model%width, mask=in_contact(state%status)))
+      end if
+      direction = merge(int(sign(1.0_wp, rates)), 0, abs(rates) > 0.0_wp)
+      if (all(direction == 0)) return
+      if (any(direction /= self%direction)) call begin_direction(self, direction)
+      self%most_nodes = max(self%most_nodes, nodes)
+      self%dissipation = self%dissipation + (state%dissipation - start%dissipation)
+      if (self%most_nodes == 0) then
          call estimate_hidden_slip(model, start, state, tolerance, width, work)
+         call add_hidden_slip(self, width, work, widest_hidden*contact_interval(model, state))
+         work = self%hidden_work
+         width = merge(self%hidden_width, 0.0_wp, work > 0.0_wp)
          if (.not. work > 0.0_wp .and. widest_slip_zone(state%status) > 0) return
       else
-         work = state%dissipation - start%dissipation
-         width = max(mean_slip_width(model, state), (nodes - 1)*contact_interval(model, state))
+         work = self%dissipation
+         width = max(mean_slip_width(model, state), (self%most_nodes - 1)*contact_interval(model, state))
       end if
-      self%nodes_now = nodes
+      self%nodes_now = self%most_nodes
       self%width_now = width
+      self%slip_sums_type = self%before
       self%work = self%work + work
       if (width > 0.0_wp) self%sharpness = self%sharpness + work/width**2
-      if (nodes >= resolved_nodes) return
+      if (self%most_nodes >= resolved_nodes) return
       self%coarse_work = self%coarse_work + work
-      self%nodes = self%nodes + nodes*work
+      self%nodes = self%nodes + self%most_nodes*work
       self%width = self%width + width*work
    end subroutine add_segment
+
+   !> Begin segments in other directions of the loads.
+   pure subroutine begin_direction(self, direction)
+      class(slip_record_type), intent(inout) :: self
+      integer, intent(in) :: direction(motion_count)
+
+      self%before = self%slip_sums_type
+      self%direction = direction
+      self%most_nodes = 0
+      self%dissipation = 0.0_wp
+      self%hidden_width = 0.0_wp
+      self%hidden_work = 0.0_wp
+   end subroutine begin_direction
+
+   !> Add the slip zones without a node of one segment, of a width (length) and a dissipation (force), to those of the segments that
+   !> count as one with it: widths add up, and the dissipation grows with their third power. Wider than `widest` (length) they would
+   !> have nodes: the theory does not hold.
+   pure subroutine add_hidden_slip(self, width, work, widest)
+      class(slip_record_type), intent(inout) :: self
+      real(wp), intent(in) :: width, work, widest
+
+      if (.not. work > 0.0_wp) return
+      self%hidden_width = self%hidden_width + width
+      self%hidden_work = work*(self%hidden_width/width)**3
+      if (self%hidden_width > widest) self%hidden_work = 0.0_wp
+   end subroutine add_hidden_slip
 
    !> Mean width of the slip zones next to stick zones, length.
    real(wp) function mean_slip_width(model, state) result(width)
@@ -152,7 +238,7 @@ contains
       real(wp), intent(out) :: width, missing
       integer, parameter :: fewest = 6
       !> Relative to the friction limit, smaller changes of the shear traction are within tolerance.
-      real(wp), parameter :: widest = 1.5_wp, least_tolerance = 1.0e-9_wp, margin = 100.0_wp
+      real(wp), parameter :: least_tolerance = 1.0e-9_wp, margin = 100.0_wp
       real(wp) :: change(size(state%status)), one_width, one_work
       integer :: added, first, last, side
 
@@ -178,7 +264,7 @@ contains
          width = max(width, one_width)
          missing = missing + one_work
       end do
-      if (width > widest*contact_interval(model, state)) missing = 0.0_wp
+      if (width > widest_hidden*contact_interval(model, state)) missing = 0.0_wp
       if (.not. missing > 0.0_wp) width = 0.0_wp
 
    contains
@@ -191,7 +277,7 @@ contains
          half_width = 0.5_wp*sum(model%width(first:last))
          ratio = spence_stick_ratio(model%scene%friction%static%largest(), model%scene%dundurs_beta())
          width = half_width*(1.0_wp - ratio)
-         if (width > negligible_pressing*half_width .and. width <= widest*contact_interval(model, state)) &
+         if (width > negligible_pressing*half_width .and. width <= widest_hidden*contact_interval(model, state)) &
             missing = model%scene%friction%static%largest()**2/model%scene%modulus()*state%fields%force(motion_approach)**2 &
                       *(width/half_width)**3
          if (.not. missing > 0.0_wp) width = 0.0_wp
@@ -262,16 +348,23 @@ contains
    elemental type(slip_record_type) function since(self, before)
       class(slip_record_type), intent(in) :: self
       type(slip_record_type), intent(in) :: before
+      !> Rounding errors of the sums, relative to the work.
+      real(wp), parameter :: round_off = 1.0e-13_wp
 
-      since = slip_record_type(self%work - before%work, self%coarse_work - before%coarse_work, self%nodes - before%nodes, &
-                               self%width - before%width, self%sharpness - before%sharpness, self%nodes_now, self%width_now)
+      since = self
+      since%work = self%work - before%work
+      since%coarse_work = self%coarse_work - before%coarse_work
+      since%nodes = self%nodes - before%nodes
+      since%width = self%width - before%width
+      since%sharpness = self%sharpness - before%sharpness
+      if (abs(since%coarse_work) <= round_off*abs(self%work)) since%coarse_work = 0.0_wp
    end function since
 
    !> Whether slip zones with too few nodes matter to the dissipation.
    elemental logical function is_coarse(self)
       class(slip_record_type), intent(in) :: self
 
-      is_coarse = self%coarse_work > coarse_share*self%work
+      is_coarse = self%coarse_work > coarse_share*max(self%work, 0.0_wp)
    end function is_coarse
 
    !> Relative error of the dissipation over the squared interval, 1/length^2; 0 without slip.

@@ -83,12 +83,16 @@ contains
 
    !> Default distance from the contact at which the displacements of a body are measured, length: the radius of a circle; else the
    !> smaller length of both shapes; else the contact half-width that the closed form expects for the normal forces; else 0.
-   pure real(wp) function default_datum(scene, body, other) result(datum)
+   !> `of_case`: whether the shapes have no length, so that it depends on the loads of this case.
+   pure subroutine default_datum(scene, body, other, datum, of_case)
       type(scene_type), intent(in) :: scene
       type(body_type), intent(in) :: body, other
+      real(wp), intent(out) :: datum
+      logical, intent(out) :: of_case
 
       datum = merge(body%radius, min(body%size_of_shape(), other%size_of_shape()), body%circular())
-      if (.not. datum < huge(1.0_wp)) datum = half_width_of_forces(scene)
-   end function default_datum
+      of_case = .not. datum < huge(1.0_wp)
+      if (of_case) datum = half_width_of_forces(scene)
+   end subroutine default_datum
 
 end module mfv_scene_indenter

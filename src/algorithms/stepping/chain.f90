@@ -57,6 +57,8 @@ module mfv_chain
       real(wp) :: coarse_node_wise = 0.0_wp
       !> Dissipation and work of the forces of all motions by the samples, force.
       real(wp) :: by_slopes = 0.0_wp, motion_work(motion_count) = 0.0_wp
+      !> Estimated error of the latter, force.
+      real(wp) :: motion_work_error = huge(1.0_wp)
    end type chain_type
 
 contains

@@ -66,6 +66,8 @@ module mfv_contact_path
       !> Work of the force of every motion so far, per unit thickness: force. Over a cycle it is the area of the loop of force and
       !> motion.
       real(wp) :: work(motion_count) = 0.0_wp
+      !> Estimated error of these works by large increments over the accuracy, force: the dissipation that it would be accurate for.
+      real(wp) :: work_error = 0.0_wp
       !> Derivatives with respect to the parameters of the path; not allocated if there are none.
       type(derivatives_type), allocatable :: derivatives
    end type path_position_type

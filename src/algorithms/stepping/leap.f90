@@ -162,6 +162,8 @@ contains
          call choose(path, chain, accepted, increments)
          if (chain%fronts .and. .not. (accepted .or. chain%begins)) &
             call refine_samples(path, interval, start, chain, accepted, increments)
+         if (chain%fronts .and. accepted .and. .not. (chain%begins .or. allocated(chain%samples)) .and. shares_work(chain)) &
+            call sample_works(path, interval, start, chain)
          if (accepted .and. .not. chain%fronts) accepted = .not. slips_back(path, interval, chain)
          if (accepted .or. increments == 0) return
       end do
@@ -187,11 +189,49 @@ contains
          call weigh_samples(path, chain)
          accepted = relative_work_error(path, chain) <= 1.0_wp .and. &
                     (ubound(chain%samples, 1) >= least_samples .or. .not. abs(interval%load(motion_approach)%rate) > 0.0_wp)
+         if (accepted .and. shares_work(chain)) &
+            accepted = chain%motion_work_error <= path%model%scene%method%accuracy*reference_work(path, chain)
          if (accepted) return
          if (2*ubound(chain%samples, 1) > most_increments .or. 2*chain%solves > solves_per_change*chain%changes) exit
       end do
       increments = 0
    end subroutine refine_samples
+
+   !> Take samples of an accurate chain for the works of the forces, if that makes them accurate.
+   subroutine sample_works(path, interval, start, chain)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: interval
+      type(sample_type), intent(in) :: start
+      type(chain_type), intent(inout) :: chain
+      type(chain_type) :: sampled
+      logical :: accepted
+      integer :: increments
+
+      sampled = chain
+      accepted = .false.
+      call refine_samples(path, interval, start, sampled, accepted, increments)
+      if (accepted) chain = sampled
+   end subroutine sample_works
+
+   !> Whether the forces of several motions change as these move, so that the dissipation does not give the work of each.
+   pure logical function shares_work(chain)
+      type(chain_type), intent(in) :: chain
+      real(wp), parameter :: negligible = 1.0e-4_wp
+      real(wp) :: area(motion_count)
+
+      area = areas_of(chain)
+      shares_work = sum(area) - maxval(area) > negligible*sum(area)
+   end function shares_work
+
+   !> Changes of the forces times those of their motions over a chain, force.
+   pure function areas_of(chain) result(area)
+      type(chain_type), intent(in) :: chain
+      real(wp) :: area(motion_count)
+
+      associate (start => chain%before(1)%fields, end => chain%after(chain%increments))
+         area = abs((end%force - start%force)*(end%motion - start%motion))
+      end associate
+   end function areas_of
 
    !> The dissipation of a chain by its samples: by slopes, or node by node if that is exact. Its error is taken to be half the
    !> difference to the sum node by node, extrapolated at second order, but at least a sixth of that to the sum itself; twice as
@@ -200,9 +240,10 @@ contains
       class(contact_path_type), intent(in) :: path
       type(chain_type), intent(inout) :: chain
       integer, parameter :: many = 8
-      real(wp) :: by_nodes, coarse, error, few
+      real(wp) :: by_nodes, coarse, error, few, coarse_works(motion_count)
 
       coarse = chain%by_slopes
+      coarse_works = chain%motion_work
       call dissipation_by_slopes(path%model, chain%samples, chain%changes, chain%by_slopes, error, chain%motion_work)
       by_nodes = chain%node_wise + (chain%node_wise - chain%coarse_node_wise)/3.0_wp
       chain%work = chain%by_slopes
@@ -212,6 +253,8 @@ contains
       if (ubound(chain%samples, 1) >= max(many, 2*chain%increments)) &
          chain%work_error = max(chain%work_error, abs(chain%by_slopes - coarse)/3.0_wp)
       call prefer_node_wise(chain)
+      if (ubound(chain%samples, 1) > chain%increments) &
+         chain%motion_work_error = maxval(abs(chain%motion_work - coarse_works))/3.0_wp + abs(chain%work - chain%by_slopes)
    end subroutine weigh_samples
 
    !> Take the dissipation node by node if its error is not larger, or if the other one is negative.
@@ -509,6 +552,8 @@ contains
          call path%take_increment(chain%after(i), chain%after(i)%slip() - path%state%fields%slip(), 0.0_wp, &
                                   friction_work=share*chain%friction_work(:, i))
       end do
+      if (shares_work(chain)) &
+         path%work_error = path%work_error + error_of_works(chain, path%work - before)/path%model%scene%method%accuracy
       path%work = before + work_of_motions(path, chain, share*chain%node_wise, path%work - before)
       if (allocated(chain%samples)) call path%recent%keep(interval%load, chain%samples)
       call path%certificate%note_large_increment(chain%traction_error, chain%work_error, reference_work(path, chain))
@@ -535,9 +580,7 @@ contains
             missing = missing - straight_dissipation(path%model, begin(i), chain%after(i))
          end do
       end if
-      associate (start => chain%before(1)%fields, end => chain%after(chain%increments))
-         area = abs((end%force - start%force)*(end%motion - start%motion))
-      end associate
+      area = areas_of(chain)
       if (sum(area) > 0.0_wp) work = work + missing*area/sum(area)
 
    contains
@@ -550,5 +593,32 @@ contains
          if (i > 1) begin = chain%after(i - 1)
       end function begin
    end function work_of_motions
+
+   !> Estimated error of the works of the forces over a chain, force: by the samples, else the largest change of those along
+   !> `straight` lines, force, from half as many of these.
+   pure real(wp) function error_of_works(chain, straight) result(error)
+      type(chain_type), intent(in) :: chain
+      real(wp), intent(in) :: straight(motion_count)
+      real(wp) :: coarse(motion_count)
+      integer :: i
+
+      error = chain%motion_work_error
+      if (allocated(chain%samples)) return
+      coarse = 0.0_wp
+      if (chain%increments > 1) coarse = work_between(chain%before(1)%fields, chain%after(2))
+      do i = 4, chain%increments, 2
+         coarse = coarse + work_between(chain%after(i - 2), chain%after(i))
+      end do
+      error = maxval(abs(straight - coarse))
+
+   contains
+
+      pure function work_between(first, last) result(work)
+         type(contact_fields_type), intent(in) :: first, last
+         real(wp) :: work(motion_count)
+
+         work = 0.5_wp*(first%force + last%force)*(last%motion - first%motion)
+      end function work_between
+   end function error_of_works
 
 end module mfv_leap

@@ -15,7 +15,8 @@ module mfv_simulation
    use mfv_kinds, only: wp
    use mfv_leap, only: apply_by_large_increments
    use mfv_load_way, only: load_summary_type
-   use mfv_motions, only: motions, motion_count, motion_approach, motion_wear, control_keep, control_force, control_displacement
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_wear, control_keep, &
+                          control_force, control_displacement
    use mfv_node_status, only: event_none, event_step_end, event_stopped, in_contact
    use mfv_observer, only: observer_type
    use mfv_scene
@@ -317,8 +318,7 @@ contains
    subroutine restart_cycle(self)
       class(simulation_type), intent(inout) :: self
 
-      self%leg%cycle%return = new_turning_point(self%contact%model, self%contact%state, self%slip, self%contact%work, &
-                                                ieee_value(1.0_wp, ieee_quiet_nan))
+      self%leg%cycle%return = turning_point_here(self, ieee_value(1.0_wp, ieee_quiet_nan))
       call set_mark(self, mark_return, self%leg%number - 1)
    end subroutine restart_cycle
 
@@ -352,6 +352,8 @@ contains
       self%message = 'step '//to_text(self%steps_done)//' was reached'
       if (step%cycles > cycles) self%message = self%message//', steady after '//to_text(cycles)//' of '// &
                                                to_text(step%cycles)//' cycles'
+      if (step%cycles > cycles .and. self%leg%cycle%walks()) &
+         self%message = self%message//' but walking: each moves the upper body by '//to_text(self%leg%cycle%drift(motion_shift), 4)
       call note_history_checksum(self, step)
    end subroutine end_step
 
@@ -517,6 +519,16 @@ contains
       call restart_cycle(self)
    end subroutine begin_cycles
 
+   !> The present state as a turning point. `stiffness`: see turning_point_type.
+   type(turning_point_type) function turning_point_here(self, stiffness) result(point)
+      class(simulation_type), intent(in) :: self
+      real(wp), intent(in) :: stiffness
+
+      associate (contact => self%contact)
+         point = new_turning_point(contact%model, contact%state, self%slip, contact%work, contact%work_error, stiffness)
+      end associate
+   end function turning_point_here
+
    !> Complete leg `leg` of cycles of `turns` legs. Store its end if it is the farthest of its cycle so far and, after a complete
    !> cycle, the cycle.
    subroutine complete_leg(self, leg, turns, cycle)
@@ -527,8 +539,7 @@ contains
       type(turning_point_type) :: point
       logical :: is_farthest
 
-      point = new_turning_point(self%contact%model, self%contact%state, self%slip, self%contact%work, &
-                                self%contact%leaving%stiffness)
+      point = turning_point_here(self, self%contact%leaving%stiffness)
       call cycle%add_point(point, is_first=mod(leg, turns) == 1)
       if (mod(leg, turns) /= 0) then
          is_farthest = mod(leg, turns) == 1
@@ -624,8 +635,8 @@ contains
             call differentiate_end(self%contact, self%leg%segment)
          end if
       end if
-      call self%slip%add_segment(self%contact%model, self%leg%start, self%contact%state, self%contact%slip_zone_nodes, &
-                                 self%contact%system%tolerance)
+      call self%slip%add_segment(self%contact%model, self%leg%start, self%contact%state, self%leg%segment%load%rate, &
+                                 self%contact%slip_zone_nodes, self%contact%system%tolerance)
       self%load%control = targets%control
       self%load%value = targets%value
       if (self%keep_history /= history_none) &

@@ -269,12 +269,17 @@ contains
       type(scene_type), intent(inout) :: scene
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: datum(2)
+      logical :: of_case(2)
       integer :: number
 
-      datum = [default_datum(scene, scene%lower, scene%upper), default_datum(scene, scene%upper, scene%lower)]
+      call default_datum(scene, scene%lower, scene%upper, datum(1), of_case(1))
+      call default_datum(scene, scene%upper, scene%lower, datum(2), of_case(2))
       do number = 1, 2
          if (.not. datum(number) > 0.0_wp) datum(number) = reader%real_value('mesh', 1, 'half_width')
-         if (reader%has('body', number, 'datum')) datum(number) = reader%real_value('body', number, 'datum')
+         if (reader%has('body', number, 'datum')) then
+            datum(number) = reader%real_value('body', number, 'datum')
+            of_case(number) = .false.
+         end if
          if (datum(number) > 0.0_wp .or. reader%logical_value('body', number, 'rigid')) cycle
          call reader%complain('body', number, 'datum', 'is needed: the shapes have no length to derive it from, and neither a '// &
                               'normal_force nor half_width in &mesh is given', error)
@@ -282,6 +287,8 @@ contains
       end do
       scene%lower%datum = datum(1)
       scene%upper%datum = datum(2)
+      scene%lower%datum_of_case = of_case(1) .and. .not. scene%lower%rigid
+      scene%upper%datum_of_case = of_case(2) .and. .not. scene%upper%rigid
    end subroutine read_datums
 
 end module mfv_body_reader

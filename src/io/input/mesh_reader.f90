@@ -174,6 +174,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       real(wp), parameter :: whole = 1.0e-9_wp, most_intervals = 5.0e7_wp
       real(wp) :: interval, intervals
+      character(:), allocatable :: remedy
       integer :: nodes, fewest
       logical :: growing
 
@@ -189,8 +190,13 @@ contains
          call reader%complain('body', number, 'kernel', 'the circle would have '//to_text(intervals, 3)// &
                               ' intervals, more than '//to_text(most_intervals)//"; use kernel='exact'", error)
       else if (abs(intervals - anint(intervals)) > whole*intervals) then
-         call reader%complain('body', number, 'kernel', 'needs a whole number of intervals around the circle, not '// &
-                              to_text(intervals, 10)//"; make 180*nodes/half_angle whole, or use kernel='exact'", error)
+         remedy = "make 180*nodes/half_angle whole, or use kernel='exact'"
+         ! Nodes are on another circle.
+         if (abs(body%radius - scene%arc_radius()) > whole*body%radius .and. .not. scene%mesh%radial) &
+            remedy = "use kernel='exact' for this body: the mesh divides the other circle, of the radius "// &
+                     to_text(scene%arc_radius())
+         call reader%complain('body', number, 'kernel', 'needs a whole number of intervals around the circle of body '// &
+                              to_text(number)//', not '//to_text(intervals, 10)//'; '//remedy, error)
       else if (body%harmonics > 0) then
          fewest = (nint(intervals) + 1)/2
          if (body%harmonics < fewest) &

@@ -210,6 +210,7 @@ contains
          call self%exchange('events', r%path%events, 'loads at which nodes changed their status', 0, huge(1))
          call self%exchange('trial', r%path%trial, 'length of the next increment, as a fraction of a segment')
          call self%exchange('work', r%path%work, 'work of the force of every motion')
+         call self%exchange('work_error', r%path%work_error, 'estimated error of these over the accuracy')
          list = transfer(r%path%certificate, [0])
          call self%exchange('certificate', list, internal)
          r%path%certificate = transfer(list, r%path%certificate)

@@ -288,6 +288,8 @@ contains
       call list%add(name//'_kolosov_constant', body%material%kolosov, '1', "Kolosov's constant of the "//name//' body')
       call list%add(name//'_datum', body%datum, 'length', 'distance from the origin at which displacements of the '//name// &
                     ' body are measured')
+      call list%add(name//'_datum_of_case', merge(1, 0, body%datum_of_case), 'whether this is a default that depends on '// &
+                    'the loads or the mesh of this case')
    end subroutine add_body
 
    !> Compliance blocks of the scene, and memory of the kernels or matrices.
@@ -608,6 +610,11 @@ contains
          if (simulation%contact%model%moves(i)) call list%add(trim(motions(i)%force_key)//'_work', c%loop_area(i), along, 'force', &
                                                               'work of the '//trim(motions(i)%force_name)//' over the cycle: '// &
                                                               'area of its loop, closed by a straight line')
+      end do
+      do i = 1, motion_count
+         if (simulation%contact%model%moves(i) .and. .not. motions(i)%is_known) &
+            call list%add(trim(motions(i)%key)//'_drift', c%drift(i), along, trim(motions(i)%unit), 'change of the '// &
+                          trim(motions(i)%key)//' over the cycle: not 0 where the upper body walks although tractions repeat')
       end do
       call list%add('stick_ratio_lowest', c%lowest_stick_ratio, along, '1', 'lowest stick ratio at a turning point')
       call list%add('stick_ratio_highest', c%highest_stick_ratio, along, '1', 'highest stick ratio at a turning point')

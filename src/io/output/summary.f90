@@ -48,7 +48,7 @@ contains
             call add_line(text, 'dissipation', amount(fields, 'dissipation'))
          end if
          call group_fields(case, simulation, 'observables', seen, observed)
-         if (simulation%cycle_count > 0) call add_last_cycle(text, seen)
+         if (simulation%cycle_count > 0) call add_last_cycle(text, seen, simulation%cycles(simulation%cycle_count)%walks())
          do i = 1, motion_count
             if (.not. (motions(i)%optional .and. model%moves(i))) cycle
             if (motions(i)%is_stress) then
@@ -101,10 +101,11 @@ contains
       end associate
    end subroutine add_contact
 
-   !> Observables of the last cycle.
-   subroutine add_last_cycle(text, fields)
+   !> Observables of the last cycle. `walks`: whether the upper body does.
+   subroutine add_last_cycle(text, fields, walks)
       character(:), allocatable, intent(inout) :: text
       type(field_type), intent(in) :: fields(:)
+      logical, intent(in) :: walks
       character(:), allocatable :: words
 
       if (field_named(fields, 'cycle_dissipation') == 0) return
@@ -112,7 +113,9 @@ contains
       if (field_named(fields, 'loss_factor') > 0) words = words//', loss factor '//amount(fields, 'loss_factor')
       if (field_named(fields, 'tangential_stiffness') > 0) &
          words = words//', stiffness '//amount(fields, 'tangential_stiffness')
-      call add_line(text, 'last cycle', words//', tractions change by '//amount(fields, 'cycle_change'))
+      words = words//', tractions change by '//amount(fields, 'cycle_change')
+      if (walks) words = words//', shift drifts by '//amount(fields, 'shift_drift')
+      call add_line(text, 'last cycle', words)
    end subroutine add_last_cycle
 
    !> The largest tension along the surface of each body, or that it is singular: then there is no observable.
