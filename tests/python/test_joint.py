@@ -577,7 +577,8 @@ def test_full_coupling_remembers_how_the_bodies_were_brought_together(pressed_wi
     without = joint.measure(scene("full", 0.3), (0.1, 0.3, 0.5, 0.7, 0.9), repeats=3)
     assert np.max(np.abs(joint.assess(joint.Masing.of(without.backbone), without).dissipation_error[1:])) < 0.04
     ratios = [one.dissipation / two.dissipation for one, two in zip(pressed_with_friction.cycles, without.cycles)]
-    assert ratios[0] > 1.1 and ratios[1:3] == pytest.approx([1.086, 1.049], abs=0.01)
+    # 1.0845 and 1.0494 on 500 nodes; 1 % is what 150 nodes leave of the small cycle.
+    assert ratios[0] > 1.1 and ratios[1:3] == pytest.approx([1.0845, 1.0494], abs=0.012)
     assert ratios[-1] == pytest.approx(1.0, abs=0.01)
 
 
