@@ -107,13 +107,13 @@ contains
    function candidates(interior) result(places)
       type(interior_type), intent(in) :: interior
       real(wp), allocatable :: places(:)
-      real(wp), allocatable :: inside(:), beside(:)
+      real(wp), allocatable :: inner(:), inside(:), beside(:)
       integer, parameter :: steps = 10
       real(wp) :: farthest, nearest
       integer :: i
 
-      inside = merged(interior%zone_edges(most_between=16), interior%kinks())
-      inside = pack(inside, [.true., inside(2:) > inside(:size(inside) - 1)])
+      allocate (inner, source=merged(interior%zone_edges(most_between=16), interior%kinks()))
+      allocate (inside, source=pack(inner, [.true., inner(2:) > inner(:size(inner) - 1)]))
       nearest = 1.0e-3_wp*interior%half_width()
       farthest = 4.0_wp*interior%half_width()
       if (interior%body%circular()) farthest = max(farthest, pi*interior%body%radius)

@@ -60,9 +60,9 @@ contains
       if (estimate%message == '') then
          estimate%coarser_nodes = nodes(2:)
          do quantity = 1, quantity_count
-            if (is_resolved(simulation, quantity) .and. &
-                .not. is_there(simulation%contact%model, quantity, values(quantity, :))) cycle
+            if (any(ieee_is_nan(values(quantity, :)))) cycle
             if (is_resolved(simulation, quantity)) then
+               if (.not. is_there(simulation%contact%model, quantity, values(quantity, :))) cycle
                estimate%bar(quantity) = new_error_bar(nodes, values(quantity, :), allowances(quantity, :), &
                                                       all(quantity /= [quantity_peak_pressure, quantity_peak_shear, &
                                                                        quantity_dissipation]), &
@@ -120,15 +120,15 @@ contains
       end select
    end function is_resolved
 
-   !> Whether a quantity is modelled on all meshes and is not zero on all of them.
+   !> Whether a quantity is modelled and is not zero on all meshes.
    pure logical function is_there(model, quantity, values)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: quantity
       real(wp), intent(in) :: values(:)
 
-      is_there = .not. any(ieee_is_nan(values))
+      is_there = .true.
       if (any(quantity == [quantity_stick_ratio, quantity_peak_shear, quantity_dissipation])) &
-         is_there = is_there .and. model%tangential
+         is_there = model%tangential
       if (quantity == quantity_stick_ratio) return
       is_there = is_there .and. any(abs(values) > 0.0_wp)
    end function is_there
