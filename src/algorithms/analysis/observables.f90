@@ -212,7 +212,7 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(cycle_type), intent(in) :: cycle
       real(wp), intent(inout) :: values(:)
-      !> A normal force below this part of the largest one is none.
+      !> A normal force that is a smaller fraction of the largest one counts as zero.
       real(wp), parameter :: round_off = 1.0e-9_wp
       real(wp) :: sliding_limit, force
 
