@@ -14,6 +14,7 @@ module mfv_advice
    use mfv_solver_costs, only: cheapest_solver, seconds_of_solve
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
+   use mfv_zone_edges, only: find_zone_edges, zone_edges_type
    implicit none
    private
    public :: advice_type, advise, advice_names, advice_count, advice_pressure, advice_shear, advice_half_width, &
@@ -242,7 +243,8 @@ contains
    subroutine add_pair(law, coarse, fine)
       type(law_type), intent(inout) :: law
       type(simulation_type), intent(in) :: coarse, fine
-      real(wp) :: difference(advice_count), on_coarse(quantity_count), on_fine(quantity_count)
+      real(wp) :: difference(advice_count)
+      type(zone_edges_type) :: on_coarse, on_fine
       integer, allocatable :: place(:)
       integer :: nodes
 
@@ -250,14 +252,14 @@ contains
       associate (on => coarse%contact%model, over => fine%contact%model, a => coarse%contact%state, b => fine%contact%state)
          place = nint((on%arc - over%arc(1))/over%interval()) + 1
          difference = 0.0_wp
-         on_coarse = quantities_of(coarse)
-         on_fine = quantities_of(fine)
+         call find_zone_edges(on, a, on_coarse)
+         call find_zone_edges(over, b, on_fine)
          difference(advice_pressure) = distance(a%fields%pressure, b%fields%pressure, place)
-         difference(advice_half_width) = abs(on_coarse(quantity_half_width)/on_fine(quantity_half_width) - 1.0_wp)
+         difference(advice_half_width) = abs(on_coarse%contact_length/on_fine%contact_length - 1.0_wp)
          law%known([advice_pressure, advice_half_width]) = .true.
          if (on%tangential) then
             law%known(advice_stick_ratio) = .true.
-            difference(advice_stick_ratio) = abs(on_coarse(quantity_stick_ratio) - on_fine(quantity_stick_ratio))
+            difference(advice_stick_ratio) = abs(on_coarse%stick_ratio() - on_fine%stick_ratio())
             law%known(advice_shear) = any(abs(b%fields%shear) > 0.0_wp)
             law%known(advice_dissipation) = fine%slip%work > 0.0_wp
             difference(advice_shear) = distance(a%fields%shear, b%fields%shear, place)
@@ -292,14 +294,15 @@ contains
    subroutine add_interval_laws(law, fine)
       type(law_type), intent(inout) :: law
       type(simulation_type), intent(in) :: fine
-      real(wp), dimension(quantity_count) :: allowances, values
+      real(wp) :: allowances(quantity_count)
+      type(zone_edges_type) :: edges
       integer :: nodes
 
       allowances = interval_allowances(fine)
-      values = quantities_of(fine)
+      call find_zone_edges(fine%contact%model, fine%contact%state, edges)
       nodes = fine%contact%state%contact_nodes()
       associate (half_width => law%squares(advice_half_width), stick_ratio => law%squares(advice_stick_ratio))
-         half_width = max(half_width, (nodes*allowances(quantity_half_width)/max(values(quantity_half_width), tiny(1.0_wp)))**2)
+         half_width = max(half_width, (nodes*allowances(quantity_half_width)/max(0.5_wp*edges%contact_length, tiny(1.0_wp)))**2)
          stick_ratio = max(stick_ratio, (nodes*allowances(quantity_stick_ratio))**2)
       end associate
    end subroutine add_interval_laws

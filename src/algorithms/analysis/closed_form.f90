@@ -15,7 +15,7 @@ module mfv_closed_form
    use mfv_simulation, only: simulation_type, states_reversals, states_steps
    implicit none
    private
-   public :: closed_form_type, closed_form_of
+   public :: closed_form_type, closed_form_of, alike
 
    type :: closed_form_type
       !> Source of each; empty without a closed form.

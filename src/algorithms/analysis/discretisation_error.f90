@@ -4,11 +4,13 @@ module mfv_discretisation_error
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use mfv_body, only: body_type, shape_matrix
    use mfv_circle, only: kernel_fourier
-   use mfv_compliance, only: block_wt
+   use mfv_closed_form, only: alike
+   use mfv_compliance, only: block_up, block_wt
    use mfv_contact_model, only: contact_model_type
    use mfv_error_bar
    use mfv_friction, only: friction_coefficient_type
    use mfv_kinds, only: pi, wp
+   use mfv_motions, only: control_keep, motion_approach, motion_shift
    use mfv_node_status, only: holds
    use mfv_observables, only: observable_count, observable_place, observables_of
    use mfv_observer, only: observer_type, relay_type
@@ -17,11 +19,11 @@ module mfv_discretisation_error
    use mfv_slip_zones, only: contact_interval
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
-   use mfv_zone_edges, only: find_patches, largest_shear, patch_type, pressing_shears
+   use mfv_zone_edges, only: find_patches, largest_shear, patch_type
    implicit none
    private
-   public :: estimate_error, coarser_scene, scene_on_mesh, fix_cycles, nearest_mesh, quantity_names, quantities_of, &
-             interval_allowances, has_coarser_meshes
+   public :: estimate_error, coarser_scene, scene_on_mesh, fix_cycles, nearest_mesh, quantity_names, interval_allowances, &
+             has_coarser_meshes
 
    !> Ratios of fine to coarse numbers of intervals: spread, so that edges lie in different places of an interval.
    real(wp), parameter :: coarsening(3) = [1.4_wp, 1.7_wp, 2.0_wp]
@@ -342,6 +344,7 @@ contains
 
       associate (state => simulation%contact%state, model => simulation%contact%model)
          call find_patches(model, state, patches)
+         call widen_uncertainties(model, patches)
          ! Errors of the two edges of one patch add up; those of several patches are independent.
          contact = sqrt(2.0_wp*sum(patches%left_error**2 + patches%right_error**2))
          stick = model%interval()
@@ -360,6 +363,58 @@ contains
          end if
       end associate
    end function interval_allowances
+
+   !> Larger uncertainties of edges where the exponents of the tractions are less certain (docs/verification.md): of contact with
+   !> full coupling, where they depend on the friction, and of stick zones that can have grown.
+   pure subroutine widen_uncertainties(model, patches)
+      type(contact_model_type), intent(in) :: model
+      type(patch_type), intent(inout) :: patches(:)
+      !> In intervals; the last one where fewer than two nodes slip beside the stick zone.
+      real(wp), parameter :: coupled = 0.02_wp, grown = 0.2_wp, grown_to_end = 0.5_wp
+      logical :: can_grow, depends_on_friction
+      integer :: i, j
+
+      can_grow = stick_zones_can_grow(model)
+      depends_on_friction = model%compliance%elastic_block(block_wt) .and. pressing_shears(model)
+      do i = 1, size(patches)
+         associate (patch => patches(i), width => model%width)
+            if (depends_on_friction .and. .not. patch%left_ends) &
+               patch%left_error = max(patch%left_error, coupled*width(patch%first))
+            if (depends_on_friction .and. .not. patch%right_ends) &
+               patch%right_error = max(patch%right_error, coupled*width(patch%last))
+            if (.not. can_grow) cycle
+            do j = 1, size(patch%stick)
+               associate (zone => patch%stick(j))
+                  zone%left_error = max(zone%left_error, width(zone%first)*merge(grown_to_end, grown, &
+                                                                                 zone%first - patch%first < 2))
+                  zone%right_error = max(zone%right_error, width(zone%last)*merge(grown_to_end, grown, patch%last - zone%last < 2))
+               end associate
+            end do
+         end associate
+      end do
+   end subroutine widen_uncertainties
+
+   !> Whether stick zones can have grown while friction acted, so that the exponent at their edges is not known: pressing with
+   !> coupling or oblique loading.
+   pure logical function stick_zones_can_grow(model)
+      type(contact_model_type), intent(in) :: model
+
+      associate (steps => model%scene%steps)
+         stick_zones_can_grow = any(steps%friction .and. steps%control(motion_approach) /= control_keep .and. &
+                                    (pressing_shears(model) .or. steps%control(motion_shift) /= control_keep))
+      end associate
+   end function stick_zones_can_grow
+
+   !> Whether pressing causes shear tractions: not with coupling of the order of a/R alone, as of a cylinder on a half-plane of
+   !> the same material.
+   pure logical function pressing_shears(model)
+      type(contact_model_type), intent(in) :: model
+
+      associate (scene => model%scene)
+         pressing_shears = model%compliance%has_block(block_up) .and. &
+                           (.not. alike(scene) .or. (scene%lower%circular() .and. scene%upper%circular()))
+      end associate
+   end function pressing_shears
 
    !> Uncertainty of a peak of the pressure that is a cusp, as with full coupling, force/length^2: at the edge of a stick zone,
    !> which lies between two nodes, or where contact began when bodies are pressed with friction, where the strain of the stick

@@ -12,19 +12,18 @@
 module mfv_zone_edges
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_body, only: shape_matrix
-   use mfv_compliance, only: block_up, block_wp, block_wt
+   use mfv_compliance, only: block_wp, block_wt
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
    use mfv_edge_solutions, only: least_power, most_power, solved_distance
    use mfv_kinds, only: pi, wp
-   use mfv_motions, only: motion_approach, motion_shift
+   use mfv_motions, only: motion_shift
    use mfv_node_status, only: holds, in_contact, slip_sign, slips
-   use mfv_scene, only: control_keep
    use mfv_surface_tractions, only: root_shift
    implicit none
    private
    public :: zone_type, patch_type, zone_edges_type, find_patches, find_zone_edges, outermost_edges, largest_shear, &
-             pressing_shears, zones_of, ends_with_body
+             zones_of, ends_with_body
 
    !> A zone of neighbouring nodes, from `first` to `last`, and its edges: arc lengths from the origin of x, positive to the
    !> right; and the uncertainty of these edges, lengths.
@@ -64,11 +63,9 @@ module mfv_zone_edges
    !> Largest number of nodes to extrapolate from.
    integer, parameter :: most_samples = 7
    real(wp), parameter :: unknown_bend = 1.0e10_wp
-   !> Uncertainty of an edge, intervals (docs/verification.md): at least, of contact and of stick zones, and of contact with
-   !> full coupling, where the exponent depends on the friction; behind a stick zone that can have grown, where it is not known;
-   !> of an edge that cannot be located between nodes, or beside which fewer than two nodes slip.
-   real(wp), parameter :: least_error = 0.002_wp, least_stick_error = 0.005_wp, least_coupled_error = 0.02_wp, &
-                          error_if_grown = 0.2_wp, error_if_unknown = 0.5_wp
+   !> Uncertainty of an edge, intervals (docs/verification.md): at least, of contact and of stick zones; of an edge that cannot be
+   !> located between nodes.
+   real(wp), parameter :: least_error = 0.002_wp, least_stick_error = 0.005_wp, error_if_unknown = 0.5_wp
    !> With coupling, number of slipping nodes next to an edge from which its discretisation error is known.
    integer, parameter :: fewest_slipping = 6
 
@@ -286,8 +283,6 @@ contains
       samples = straightened(samples, merge(patch%right_power, patch%left_power, side > 0))
       edge = model%arc(outermost) + side*model%width(outermost)*refined_distance(samples)
       error = model%width(outermost)*uncertainty(samples)
-      if (model%compliance%elastic_block(block_wt) .and. pressing_shears(model)) &
-         error = max(error, least_coupled_error*model%width(outermost))
    end subroutine find_contact_edge
 
    !> Number of neighbouring nodes that slip in one direction, from a node to the left (-1) or right (1).
@@ -361,8 +356,6 @@ contains
       edge = model%arc(last) + side*model%width(last)*distance_of_lack(samples, power)
       error = model%width(last)*max(uncertainty(straightened(samples, power)), least_stick_error)
       call correct_by_slip(edge, error)
-      if (stick_zones_can_grow(model)) error = max(error, model%width(last)*merge(error_if_unknown, error_if_grown, &
-                                                                                  abs(patch_end - last) < 2))
 
    contains
 
@@ -572,33 +565,6 @@ contains
       distance = distance_to_zero(samples, .false.)
       if (samples%is_regular) distance = solved_distance(samples%inwards, samples%value, samples%power, distance)
    end function refined_distance
-
-   !> Whether stick zones can have grown while friction acted, so that the exponent at their edges is not known: pressing with
-   !> coupling or oblique loading.
-   pure logical function stick_zones_can_grow(model) result(can_grow)
-      type(contact_model_type), intent(in) :: model
-      integer :: i
-
-      can_grow = .false.
-      do i = 1, size(model%scene%steps)
-         associate (step => model%scene%steps(i))
-            can_grow = can_grow .or. step%friction .and. step%control(motion_approach) /= control_keep .and. &
-                       (pressing_shears(model) .or. step%control(motion_shift) /= control_keep)
-         end associate
-      end do
-   end function stick_zones_can_grow
-
-   !> Whether pressing causes shear tractions: not with coupling of the order of a/R alone, as of a cylinder on a half-plane of
-   !> the same material.
-   pure logical function pressing_shears(model)
-      type(contact_model_type), intent(in) :: model
-      real(wp), parameter :: none = 1.0e-12_wp
-
-      associate (scene => model%scene)
-         pressing_shears = model%compliance%has_block(block_up) .and. &
-                           (abs(scene%dundurs_beta()) > none .or. (scene%lower%circular() .and. scene%upper%circular()))
-      end associate
-   end function pressing_shears
 
    !> Uncertainty of the zero of nearly linear values, intervals: small with a known discretisation error, otherwise the
    !> distance of the zeros by near and by farther values.
