@@ -33,7 +33,8 @@ module mfv_run_help
       '', &
       'Options:', &
       '  --accuracy   allowed error of the tractions and of the dissipation, such as 1e-3, in place of', &
-      '               accuracy in &solver: large increments where they cost less than events', &
+      '               accuracy in &solver: large increments where they cost less than events, and the', &
+      '               number of nodes where the case leaves the mesh to the program', &
       '  --estimate   also solve the case on coarser meshes, for error bars of half-width, stick ratio,', &
       '               peak tractions, dissipation and largest tension; takes about twice the time', &
       '  --sensitivity  solve the case once more with all coefficients of friction times 1 + 1e-12,', &

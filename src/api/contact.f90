@@ -135,7 +135,7 @@ contains
                            "stepping='auto' or 'leap' only")
             return
          end if
-         contact%case%scene%method%accuracy = accuracy
+         call contact%case%scene%set_accuracy(accuracy)
          contact%case%options = '--accuracy '//to_text(accuracy)
       end if
       if (present(suffix)) contact%case%result_path = with_suffix(contact%case%result_path, suffix)

@@ -14,7 +14,7 @@ module mfv_refinement
    use mfv_zone_edges, only: find_patches, patch_type
    implicit none
    private
-   public :: refine_at_edges, nodes_for_accuracy
+   public :: refine_at_edges
 
    !> Coarser meshes have this part of the nodes, and at least this many.
    real(wp), parameter :: coarse_part = 0.5_wp
@@ -54,7 +54,6 @@ contains
       interrupted = .false.
       if (scene%fault() /= '') return
       nodes = scene%mesh%nodes
-      if (scene%mesh%nodes_by_accuracy .and. scene%method%accuracy > 0.0_wp) nodes = nodes_for_accuracy(scene%method%accuracy)
       if (present(observer)) watch%caller => observer
       watch%runs = passes
       trial = scene_on_mesh(scene, max(nint(coarse_part*nodes), fewest_coarse))
@@ -87,16 +86,6 @@ contains
       scene%mesh%ends = ends
       scene%mesh%nodes = size(ends) - 1
    end subroutine refine_at_edges
-
-   !> Nodes with which the tractions on a refined mesh have about the given error (in the mean, relative to the largest); measured
-   !> for Cattaneo's problem: 6 over the square of the number of nodes (docs/verification.md).
-   pure integer function nodes_for_accuracy(accuracy) result(nodes)
-      real(wp), intent(in) :: accuracy
-      real(wp), parameter :: error_of_one = 6.0_wp
-      integer, parameter :: fewest = 60
-
-      nodes = max(fewest, ceiling(sqrt(error_of_one/accuracy)))
-   end function nodes_for_accuracy
 
    !> The edges at the ends of all steps and reversals, and at the end of the run.
    subroutine find_edges(simulation, edges)

@@ -29,7 +29,7 @@ contains
 
    !> Warnings about a simulation: few nodes in contact or slip zones; contact at large angles, or beyond a datum; surfaces that
    !> end, are steep or are uncertain between points; yield (the largest von Mises stress by refinement); large rotations; wear of
-   !> much at once; lost digits.
+   !> much at once; lost digits; an accuracy beyond that of the mesh.
    subroutine validity_warnings(simulation, warnings)
       type(simulation_type), intent(in) :: simulation
       type(string_type), allocatable, intent(out) :: warnings(:)
@@ -44,6 +44,7 @@ contains
          call check_angle(simulation, 'lower', scene%lower, warnings)
          call check_angle(simulation, 'upper', scene%upper, warnings)
          call check_datum(simulation, scene, warnings)
+         call check_accuracy(scene, warnings)
          call warn_of_surface(simulation, .false., scene%lower, largest_angle, warnings)
          call warn_of_surface(simulation, .true., scene%upper, largest_angle, warnings)
          call check_yield(simulation, .false., scene%lower, warnings)
@@ -84,6 +85,19 @@ contains
                     'contact on the '//name//' body; vertical normals are inaccurate beyond '// &
                     to_text(largest_angle, 2)//' degrees')
    end subroutine check_angle
+
+   !> An accuracy for which equal intervals would have to be very small.
+   subroutine check_accuracy(scene, warnings)
+      type(scene_type), intent(in) :: scene
+      type(string_type), allocatable, intent(inout) :: warnings(:)
+      integer :: wanted
+
+      if (.not. scene%mesh%nodes_by_accuracy .or. allocated(scene%mesh%ends) .or. .not. scene%friction%converges()) return
+      wanted = scene%mesh%nodes_for(scene%method%accuracy)
+      if (wanted > scene%mesh%nodes) &
+         call add_text(warnings, 'accuracy='//to_text(scene%method%accuracy, 2)//' needs about '//to_text(real(wanted, wp), 2)// &
+                       ' equal intervals; the mesh has '//to_text(scene%mesh%nodes)//": give nodes, or refine='edges'")
+   end subroutine check_accuracy
 
    !> A default datum that another case would not have; and a datum inside the contact: the compliance of a flat contact of the
    !> half-width a is proportional to ln(2 d/a).

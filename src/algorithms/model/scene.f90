@@ -87,16 +87,19 @@ module mfv_scene
    !> then have an error of 0.3 of the wanted one as a median, and of 1.6 at most (docs/verification.md).
    real(wp), parameter :: friction_tolerance_part = 0.1_wp
 
+   !> Nodes of a mesh by default; and most nodes on account of an accuracy.
+   integer, parameter :: usual_nodes = 101, most_by_accuracy = 3001
+
    !> Mesh settings of the user; what is not set is chosen from an estimate of the contact.
    type :: mesh_request_type
-      integer :: nodes = 101
+      integer :: nodes = usual_nodes
       !> Nodes are the centres of equal intervals over [-half_width, half_width], length along the surface; 0: chosen, and
       !> increased when the contact requires it.
       real(wp) :: half_width = 0.0_wp
       !> Ends of unequal intervals, increasing arc lengths from the origin of x, shape (nodes + 1); unallocated for equal ones.
       real(wp), allocatable :: ends(:)
-      !> Whether such intervals are to be chosen, small at the edges of contact and stick zones; and whether their number follows
-      !> from the accuracy.
+      !> Whether such intervals are to be chosen, small at the edges of contact and stick zones; and whether the number of intervals
+      !> follows from the accuracy (set_accuracy).
       logical :: refined = .false., nodes_by_accuracy = .false.
       !> Whether `nodes` intervals cover the whole circle; only those near the contact are modelled.
       logical :: whole_circle = .false.
@@ -104,6 +107,8 @@ module mfv_scene
       logical :: parabolic = .false.
       !> Whether normals are radial instead of vertical: for a disk in a hole.
       logical :: radial = .false.
+   contains
+      procedure :: nodes_for
    end type mesh_request_type
 
    !> What is wrong with a scene of two rigid bodies, for messages.
@@ -121,6 +126,7 @@ module mfv_scene
       type(method_type) :: method
       type(step_type), allocatable :: steps(:)
    contains
+      procedure :: set_accuracy
       procedure :: fault
       procedure :: tangential
       procedure :: moves
@@ -188,6 +194,34 @@ contains
       if (self%accuracy > 0.0_wp) tolerance = max(friction_tolerance_part*self%accuracy, least)
       if (self%friction_tolerance > 0.0_wp) tolerance = self%friction_tolerance
    end function allowed_in_friction
+
+   !> Set the accuracy, and the number of nodes if that follows from it and a finer mesh is more accurate.
+   pure subroutine set_accuracy(self, accuracy)
+      class(scene_type), intent(inout) :: self
+      real(wp), intent(in) :: accuracy
+
+      self%method%accuracy = accuracy
+      if (self%mesh%nodes_by_accuracy .and. self%friction%converges()) &
+         self%mesh%nodes = min(self%mesh%nodes_for(accuracy), most_by_accuracy)
+   end subroutine set_accuracy
+
+   !> Nodes with which the tractions have about the given error (root mean square over the contact, relative to the largest),
+   !> without an upper limit; measured (docs/verification.md): on equal intervals 0.3 over the number of nodes, on refined ones 6
+   !> over its square. The usual number for accuracy 0.
+   elemental integer function nodes_for(self, accuracy) result(nodes)
+      class(mesh_request_type), intent(in) :: self
+      real(wp), intent(in) :: accuracy
+      real(wp), parameter :: error_of_one = 0.3_wp, refined_error_of_one = 6.0_wp
+      integer, parameter :: fewest_refined = 60
+
+      nodes = usual_nodes
+      if (.not. accuracy > 0.0_wp) return
+      if (self%refined) then
+         nodes = max(fewest_refined, ceiling(sqrt(refined_error_of_one/accuracy)))
+      else
+         nodes = max(usual_nodes, 2*nint(min(0.5_wp*error_of_one/accuracy, 1.0e9_wp)) + 1)
+      end if
+   end function nodes_for
 
    !> Why a scene cannot be modelled at all, empty if it can. (The readers check much more.)
    pure function fault(self)

@@ -101,7 +101,8 @@ contains
    subroutine add_mesh_keys(keys)
       type(catalogue_type), intent(inout) :: keys
 
-      call keys%add('mesh', 'nodes', kind_integer, 'number of equal intervals; nodes are their centres', default='101', &
+      call keys%add('mesh', 'nodes', kind_integer, 'number of equal intervals; nodes are their centres; without '// &
+                    'half_width, half_angle and ends more by default for a small accuracy in &solver', default='101', &
                     lower=1.0_wp, upper=most_nodes)
       call keys%add('mesh', 'half_width', kind_real, 'the intervals cover [-half_width, half_width] along the surface; if '// &
                     'omitted: chosen from an estimate of the contact, and extended when the contact reaches its '// &
@@ -230,9 +231,9 @@ contains
 
       call keys%add('solver', 'algorithm', kind_choice, 'mfv: Method of First Violation; conventional: load steps with '// &
                     'corrections of node statuses, for comparison', default='mfv', choices=algorithm_names)
-      call keys%add('solver', 'accuracy', kind_real, 'allowed error of large increments: of the tractions, relative to the '// &
-                    'largest traction, and of the dissipation of each load segment, relative to it; 0: every event is '// &
-                    'followed; dahl, weakening: see friction_tolerance', &
+      call keys%add('solver', 'accuracy', kind_real, 'allowed error: of the tractions, relative to the largest traction, '// &
+                    'and, by large increments, of the dissipation of each load segment, relative to it; 0: every event is '// &
+                    'followed; also chooses nodes; dahl, weakening: see friction_tolerance', &
                     default='0', lower=0.0_wp, upper=0.1_wp)
       call keys%add('solver', 'stepping', kind_choice, "algorithm='mfv': events found from rates (event), or from trial load "// &
                     'steps and interpolation (nominal), with the same states (coulomb, static_kinetic); large increments '// &

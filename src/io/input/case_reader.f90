@@ -125,6 +125,7 @@ contains
       if (.not. allocated(error)) call check_coefficients_a_node(reader, scene, error)
       if (allocated(error)) return
       call read_method(reader, scene%method)
+      call scene%set_accuracy(scene%method%accuracy)
       call check_method(reader, scene%method, error)
    end subroutine read_scene
 

@@ -46,6 +46,7 @@ contains
          return
       end do
       scene%mesh%refined = reader%text_value('mesh', 1, 'refine') == 'edges'
+      scene%mesh%nodes_by_accuracy = program_chooses_nodes(reader, scene)
       if (scene%mesh%refined) call check_refined(reader, scene, error)
       if (.not. allocated(error) .and. reader%has('mesh', 1, 'ends')) call read_ends(reader, scene, error)
       if (.not. allocated(error) .and. reader%has('mesh', 1, 'half_angle')) call read_half_angle(reader, scene, error)
@@ -67,13 +68,25 @@ contains
       if (.not. allocated(error)) call check_circle(reader, 2, scene, scene%upper, error)
    end subroutine read_mesh
 
+   !> Whether the number of nodes follows from the accuracy: of equal intervals if the program also chooses their width.
+   logical function program_chooses_nodes(reader, scene)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(in) :: scene
+      type(string_type), allocatable :: keys(:)
+      integer :: i
+
+      keys = list_of_words('half_width half_angle ends')
+      program_chooses_nodes = scene%lower%shape /= shape_matrix .and. .not. reader%has('mesh', 1, 'nodes')
+      if (.not. scene%mesh%refined) program_chooses_nodes = program_chooses_nodes .and. &
+                                                            .not. any([(reader%has('mesh', 1, keys(i)%text), i=1, size(keys))])
+   end function program_chooses_nodes
+
    !> Error if a mesh cannot be refined at edges.
    subroutine check_refined(reader, scene, error)
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(inout) :: scene
       type(error_type), allocatable, intent(out) :: error
 
-      scene%mesh%nodes_by_accuracy = .not. reader%has('mesh', 1, 'nodes')
       if (reader%has('mesh', 1, 'ends')) then
          call reader%complain('mesh', 1, 'refine', "must be 'none' with ends, which are the mesh already", error)
       else if (scene%mesh%nodes > most_graded) then
