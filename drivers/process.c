@@ -1,6 +1,8 @@
 /* The standard streams, signals and threads of a program. In C because open flags and signal numbers depend on the system. */
 #define _DEFAULT_SOURCE /* signal installs a handler for good */
+#ifndef __ELF__
 #include <dlfcn.h>
+#endif
 #include <errno.h>
 #include <fcntl.h>
 #ifdef __GLIBC__
@@ -25,10 +27,17 @@ void mfv_begin_streams(void) {
 
 /* One thread for OpenBLAS: a second one slows small systems down and changes the last digits of sums. The programs set this
    whatever OPENBLAS_NUM_THREADS says; the library leaves it to its host. No effect with another BLAS. */
+#ifdef __ELF__
+void openblas_set_num_threads(int count) __attribute__((weak));
+void mfv_use_one_thread(void) {
+  if (openblas_set_num_threads != NULL) openblas_set_num_threads(1);
+}
+#else
 void mfv_use_one_thread(void) {
   void (*set)(int) = (void (*)(int))dlsym(dlopen(NULL, RTLD_LAZY), "openblas_set_num_threads");
   if (set != NULL) set(1);
 }
+#endif
 
 #ifdef __ELF__
 #if defined(__GLIBC__) && defined(__LP64__) && defined(MADV_HUGEPAGE)
