@@ -339,7 +339,7 @@ contains
       type(simulation_type), intent(in) :: simulation
       real(wp) :: allowances(quantity_count)
       type(patch_type), allocatable :: patches(:)
-      real(wp) :: contact, stick, length
+      real(wp) :: contact, stick, length, largest, nodal
       integer :: i
 
       associate (state => simulation%contact%state, model => simulation%contact%model)
@@ -354,13 +354,16 @@ contains
          allowances = 0.0_wp
          allowances(quantity_half_width) = 0.5_wp*contact
          allowances(quantity_stick_ratio) = norm2([stick, contact*state%stick_nodes()/max(state%contact_nodes(), 1)])/length
+         if (size(patches) == 0) return
+         nodal = maxval(abs(state%fields%shear))
+         largest = maxval([(largest_shear(model, state, patches(i)), i=1, size(patches))])
          if (model%compliance%has_block(block_wt)) then
             allowances(quantity_peak_pressure) = room_at_cusp(state%fields%pressure, holds(state%status))
             ! The pressure at the edge of a stick zone, which limits the shear there, is interpolated across a cusp.
-            if (pressing_shears(model)) allowances(quantity_peak_shear) = &
-               max(maxval([(largest_shear(model, state, patches(i)), i=1, size(patches))]) - maxval(abs(state%fields%shear)), &
-                   0.0_wp)
+            if (pressing_shears(model)) allowances(quantity_peak_shear) = largest - nodal
          end if
+         if (.not. largest > nodal) &
+            allowances(quantity_peak_shear) = room_at_kink(abs(state%fields%shear), holds(state%status))
       end associate
    end function interval_allowances
 
@@ -424,18 +427,11 @@ contains
       logical, intent(in) :: held(:)
       !> The edge of the stick zone is sought this many nodes from the peak.
       integer, parameter :: reach = 2
-      real(wp) :: slope(-1:1)
       integer :: peak, last, top, side, i
 
-      room = 0.0_wp
+      room = room_at_kink(pressure, held)
       peak = maxloc(pressure, dim=1)
       if (peak - reach <= 1 .or. peak + reach >= size(pressure)) return
-      do side = -1, 1, 2
-         ! Extrapolated to the peak: 0 if it is smooth.
-         slope(side) = 2.5_wp*(pressure(peak + side) - pressure(peak + 2*side)) &
-                       - 1.5_wp*(pressure(peak + 2*side) - pressure(peak + 3*side))
-      end do
-      room = max(0.5_wp*min(slope(-1), slope(1)), 0.0_wp)
       do side = -1, 1, 2
          do i = -reach, reach - 1
             last = peak + side*i
@@ -447,5 +443,28 @@ contains
          end do
       end do
    end function room_at_cusp
+
+   !> Uncertainty of the largest of some nodal values where it lies between nodes, as a kink or, inside a stick zone, as a cusp at the
+   !> edge of an earlier one; in the unit of the values, 0 if they are smooth. Arguments of shape (nodes).
+   pure real(wp) function room_at_kink(values, held) result(room)
+      real(wp), intent(in) :: values(:)
+      logical, intent(in) :: held(:)
+      integer, parameter :: reach = 3
+      real(wp) :: slope(-1:1)
+      integer :: peak, side
+
+      room = 0.0_wp
+      peak = maxloc(values, dim=1)
+      if (peak - reach < 1 .or. peak + reach > size(values)) return
+      do side = -1, 1, 2
+         ! Extrapolated to the peak: 0 if it is smooth.
+         slope(side) = 2.5_wp*(values(peak + side) - values(peak + 2*side)) - 1.5_wp*(values(peak + 2*side) - values(peak + 3*side))
+      end do
+      associate (flat => max(min(slope(-1), slope(1)), 0.0_wp), steep => max(slope(-1), slope(1)))
+         room = 0.5_wp*flat
+         ! The steep side of a cusp is a root.
+         if (all(held(peak - reach:peak + reach))) room = min(4.0_wp*flat, 0.6_wp*steep)
+      end associate
+   end function room_at_kink
 
 end module mfv_discretisation_error
