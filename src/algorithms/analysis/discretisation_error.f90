@@ -444,8 +444,8 @@ contains
       end do
    end function room_at_cusp
 
-   !> Uncertainty of the largest of some nodal values where it lies between nodes, as a kink or, inside a stick zone, as a cusp at the
-   !> edge of an earlier one; in the unit of the values, 0 if they are smooth. Arguments of shape (nodes).
+   !> Uncertainty of the largest of some nodal values where it lies between nodes, as a kink or, inside a stick zone, as a cusp at
+   !> the edge of an earlier one; in the unit of the values, 0 if they are smooth. Arguments of shape (nodes).
    pure real(wp) function room_at_kink(values, held) result(room)
       real(wp), intent(in) :: values(:)
       logical, intent(in) :: held(:)
