@@ -36,7 +36,7 @@ module mfv_run_help
       '               accuracy in &solver: large increments where they cost less than events, and the', &
       '               number of nodes where the case leaves the mesh to the program', &
       '  --estimate   also solve the case on coarser meshes, for error bars of half-width, stick ratio,', &
-      '               peak tractions, dissipation and largest tension; takes about twice the time', &
+      '               peak tractions, dissipation, largest tension and loops; takes about twice the time', &
       '  --sensitivity  solve the case once more with all coefficients of friction times 1 + 1e-12,', &
       '               and print by how much tractions, dissipation and stick ratio change: static and', &
       '               kinetic friction can be chaotic', &

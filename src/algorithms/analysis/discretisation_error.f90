@@ -1,5 +1,5 @@
 !> Discretisation error of a result: the scene is solved again on coarser meshes; half-width and stick ratio between nodes,
-!> peak tractions, dissipation and the largest tensions get error bars (mfv_error_bar).
+!> peak tractions, dissipation, the largest tensions, and the loop of the last cycle get error bars (mfv_error_bar).
 module mfv_discretisation_error
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use mfv_body, only: body_type, shape_matrix
@@ -32,8 +32,9 @@ module mfv_discretisation_error
    !> The observables that get error bars, in the order of the quantities. Of several patches the half-width is half their
    !> total length.
    character(*), parameter :: quantity_names(quantity_count) = &
-                              [character(18) :: 'contact_half_width', 'stick_ratio', 'peak_pressure', 'peak_shear', 'dissipation', &
-                                                 'lower_tension', 'upper_tension']
+                              [character(20) :: 'contact_half_width', 'stick_ratio', 'peak_pressure', 'peak_shear', 'dissipation', &
+                                                 'lower_tension', 'upper_tension', 'cycle_dissipation', 'tangential_stiffness', &
+                                                 'secant_stiffness', 'loss_factor']
 
 contains
 
@@ -52,6 +53,8 @@ contains
       type(error_estimate_type) :: estimate
       real(wp), allocatable :: values(:, :), allowances(:, :)
       integer, allocatable :: nodes(:)
+      integer, parameter :: by_edges(4) = [quantity_half_width, quantity_stick_ratio, quantity_lower_tension, &
+                                           quantity_upper_tension]
       integer :: quantity
 
       estimate%nodes = simulation%contact%model%scene%mesh%nodes
@@ -66,10 +69,9 @@ contains
             if (is_resolved(simulation, quantity)) then
                if (.not. is_there(simulation%contact%model, quantity, values(quantity, :))) cycle
                estimate%bar(quantity) = new_error_bar(nodes, values(quantity, :), allowances(quantity, :), &
+                                                      any(quantity == by_edges), &
                                                       all(quantity /= [quantity_peak_pressure, quantity_peak_shear, &
-                                                                       quantity_dissipation]), &
-                                                      any(quantity == [quantity_half_width, quantity_stick_ratio, &
-                                                                       quantity_dissipation]))
+                                                                       quantity_lower_tension, quantity_upper_tension]))
             else
                estimate%bar(quantity) = unresolved_bar(values(quantity, :))
             end if
@@ -114,7 +116,7 @@ contains
 
       is_resolved = .true.
       select case (quantity)
-      case (quantity_dissipation)
+      case (quantity_dissipation, quantity_cycle_dissipation, quantity_loss_factor)
          is_resolved = .not. simulation%slip%is_coarse()
       case (quantity_stick_ratio, quantity_peak_shear, quantity_lower_tension, quantity_upper_tension)
          is_resolved = .not. simulation%slip%is_coarse_now(contact_interval(simulation%contact%model, &

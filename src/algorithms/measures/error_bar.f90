@@ -8,12 +8,14 @@ module mfv_error_bar
    private
    public :: error_bar_type, error_estimate_type, new_error_bar, unresolved_bar, logarithmic_bar, quantity_count, &
              quantity_half_width, quantity_stick_ratio, quantity_peak_pressure, quantity_peak_shear, quantity_dissipation, &
-             quantity_lower_tension, quantity_upper_tension, lowest_order, highest_order
+             quantity_lower_tension, quantity_upper_tension, quantity_cycle_dissipation, quantity_secant_stiffness, &
+             quantity_loss_factor, lowest_order, highest_order
 
    !> Estimated quantities.
    integer, parameter :: quantity_half_width = 1, quantity_stick_ratio = 2, quantity_peak_pressure = 3, &
                          quantity_peak_shear = 4, quantity_dissipation = 5, quantity_lower_tension = 6, &
-                         quantity_upper_tension = 7, quantity_count = 7
+                         quantity_upper_tension = 7, quantity_cycle_dissipation = 8, quantity_tangential_stiffness = 9, &
+                         quantity_secant_stiffness = 10, quantity_loss_factor = 11, quantity_count = 11
 
    !> A quantity with its error bar.
    type :: error_bar_type

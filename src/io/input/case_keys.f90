@@ -275,7 +275,7 @@ contains
                     '(reversals) or those of the last cycle (last_cycle) of its cycles; or only the last one; steps if '// &
                     'omitted in a case with &history', default='reversals', choices='reversals steps none last_cycle')
       call keys%add('output', 'error_estimate', kind_logical, 'whether the case is also solved on coarser meshes, to estimate '// &
-                    'the discretisation error of half-width, stick ratio, peak tractions, dissipation and largest tension', &
+                    'the discretisation error of half-width, stick ratio, peak tractions, dissipation, largest tension and loops', &
                     default='.false.')
       call keys%add('output', 'sensitivity', kind_logical, 'whether the case is run once more with all coefficients of '// &
                     'friction times 1 + 1e-12, to report how much that changes tractions, dissipation and stick ratio', &

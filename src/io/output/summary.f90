@@ -171,7 +171,8 @@ contains
       type(simulation_type), intent(in) :: simulation
       character(*), parameter :: words(quantity_count) = [character(21) :: 'contact half-width', 'stick ratio', 'peak pressure', &
                                                                              'peak shear', 'dissipation', 'tension of lower body', &
-                                                                                                            'tension of upper body']
+                                                             'tension of upper body', 'cycle dissipation', 'tangential stiffness', &
+                                                                                                  'secant stiffness', 'loss factor']
       type(field_type), allocatable :: fields(:)
       character(:), allocatable :: meshes, value, percent
       integer :: i
