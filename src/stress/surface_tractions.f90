@@ -91,8 +91,9 @@ contains
       integer, allocatable :: owner(:)
       real(wp), parameter :: near = 1.0e-6_wp
       integer, parameter :: fewest_in_zone = 60
+      integer, allocatable :: nodes(:)
       logical, allocatable :: done(:)
-      integer :: fewest, i, j
+      integer :: fewest, i, j, k
 
       allocate (elements%from(0), elements%to(0), elements%edges(0), elements%first(0), elements%last(0))
       patch%turn = zones%turn
@@ -106,10 +107,11 @@ contains
          if (i == 0) cycle
          if (done(i)) cycle
          done(i) = .true.
-         patch%arc = pack(arc, owner == i)
-         patch%width = pack(width, owner == i)
-         patch%pressure = pack(pressure, owner == i)
-         patch%shear = pack(shear, owner == i)
+         nodes = pack([(k, k=1, size(arc))], owner == i)
+         patch%arc = arc(nodes)
+         patch%width = width(nodes)
+         patch%pressure = pressure(nodes)
+         patch%shear = shear(nodes)
          patch%contact = zone_type(edge=edges(:, i), rooted=.not. sharp(:, i), rest=table_type())
          patch%counted = i > size(zones%contact, 2)
          call fit_patch(patch, zones)
