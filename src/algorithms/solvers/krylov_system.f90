@@ -495,7 +495,7 @@ contains
       type(contact_model_type), intent(in) :: model
       real(wp) :: unit
 
-      if (.not. (any(abs(self%pressure) > 0.0_wp) .or. any(abs(self%shear) > 0.0_wp))) then
+      if (.not. (any(abs(self%pressure(self%contact)) > 0.0_wp) .or. any(abs(self%shear(self%contact)) > 0.0_wp))) then
          self%normal = 0.0_wp
          self%tangential = 0.0_wp
          return

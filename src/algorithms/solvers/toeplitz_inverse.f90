@@ -174,7 +174,7 @@ contains
          work(:order) = vector
          work(order + 1:) = 0.0_wp
          call real_transform(work, spectrum)
-         spectrum = factor*spectrum
+         spectrum = cmplx(factor*real(spectrum, wp), factor*aimag(spectrum), wp)
          call back_transform(spectrum, work)
          image = work(:order)/size(work)
       end subroutine multiply
