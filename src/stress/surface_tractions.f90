@@ -231,7 +231,7 @@ contains
       do side = 1, 2
          outermost = merge(1, size(patch%arc), side == 1)
          if (any(patch%stick%contains_place(patch%arc(outermost)))) cycle
-         patch%contact%power(side) = 0.5_wp + (2*side - 3)*exponent_shift(patch%arc(outermost))
+         patch%contact%power(side:side) = 0.5_wp + (2*side - 3)*exponent_shift(patch%arc(outermost:outermost))
       end do
       do i = 1, size(patch%stick)
          patch%stick(i)%power = 0.5_wp + [1, -1]*exponent_shift(patch%stick(i)%edge)
@@ -239,10 +239,11 @@ contains
 
    contains
 
-      elemental real(wp) function exponent_shift(place)
-         real(wp), intent(in) :: place
+      pure function exponent_shift(places)
+         real(wp), intent(in) :: places(:)
+         real(wp) :: exponent_shift(size(places))
 
-         exponent_shift = root_shift(beta*patch%limit%at(place))
+         exponent_shift = root_shift(beta*patch%limit%at(places))
       end function exponent_shift
    end subroutine find_powers
 
@@ -513,38 +514,42 @@ contains
       end associate
    end function mean_roots
 
-   !> Linear interpolation in a table, constant outside; 0 for an empty one.
-   elemental real(wp) function at(self, x)
+   !> Linear interpolation in a table at ascending `x`, constant outside; 0 for an empty one.
+   pure function at(self, x) result(values)
       class(table_type), intent(in) :: self
-      real(wp), intent(in) :: x
-      integer :: i, n
+      real(wp), intent(in) :: x(:)
+      real(wp) :: values(size(x))
+      integer :: before(size(x)), i, n
 
-      at = 0.0_wp
+      values = 0.0_wp
       n = size(self%x)
       if (n == 0) return
-      i = interval_of(self%x, x)
-      if (i == 0) at = self%value(1)
-      if (i == n) at = self%value(n)
-      if (i > 0 .and. i < n) at = along(self, i, x)
+      before = last_before(self%x, x)
+      do i = 1, size(x)
+         if (before(i) == 0 .or. before(i) == n) then
+            values(i) = self%value(max(1, before(i)))
+         else
+            values(i) = along(self, before(i), x(i))
+         end if
+      end do
    end function at
 
    !> The same with linear extrapolation, limited to between half and twice the last value.
-   elemental real(wp) function continued(self, x)
+   pure function continued(self, x) result(values)
       class(table_type), intent(in) :: self
-      real(wp), intent(in) :: x
-      integer :: i, n
-      real(wp) :: bounds(2)
+      real(wp), intent(in) :: x(:)
+      real(wp) :: values(size(x)), bounds(2)
+      integer :: before(size(x)), i, n
 
+      values = self%at(x)
       n = size(self%x)
-      if (n < 2) then
-         continued = self%at(x)
-         return
-      end if
-      i = interval_of(self%x, x)
-      continued = along(self, max(1, min(i, n - 1)), x)
-      if (i > 0 .and. i < n) return
-      bounds = [0.5_wp, 2.0_wp]*self%value(max(1, i))
-      continued = min(max(continued, minval(bounds)), maxval(bounds))
+      if (n < 2) return
+      before = last_before(self%x, x)
+      do i = 1, size(x)
+         if (before(i) > 0 .and. before(i) < n) cycle
+         bounds = [0.5_wp, 2.0_wp]*self%value(max(1, before(i)))
+         values(i) = min(max(along(self, max(1, min(before(i), n - 1)), x(i)), minval(bounds)), maxval(bounds))
+      end do
    end function continued
 
    !> The straight line through the points i and i + 1 of a table.
@@ -556,43 +561,48 @@ contains
       along = self%value(i) + (self%value(i + 1) - self%value(i))*(x - self%x(i))/(self%x(i + 1) - self%x(i))
    end function along
 
-   !> Index of the last of ascending positions not beyond `x`, 0 for none, by bisection.
-   pure integer function interval_of(positions, x) result(low)
-      real(wp), intent(in) :: positions(:), x
-      integer :: high, middle
+   !> Indices of the last of ascending positions not beyond ascending `x`, 0 for none.
+   pure function last_before(positions, x) result(last)
+      real(wp), intent(in) :: positions(:), x(:)
+      integer :: last(size(x)), i, j
 
-      low = 0
-      high = size(positions) + 1
-      do while (high - low > 1)
-         middle = (low + high)/2
-         if (positions(middle) <= x) then
-            low = middle
-         else
-            high = middle
-         end if
+      j = 0
+      do i = 1, size(x)
+         do while (j < size(positions))
+            if (positions(j + 1) > x(i)) exit
+            j = j + 1
+         end do
+         last(i) = j
       end do
-   end function interval_of
+   end function last_before
 
-   !> p + i tau of a patch at a point.
-   elemental complex(wp) function tractions(self, x)
+   !> p + i tau of a patch at ascending places.
+   pure function tractions(self, x)
       class(patch_type), intent(in) :: self
-      real(wp), intent(in) :: x
-      real(wp) :: pressure, shear, lack
+      real(wp), intent(in) :: x(:)
+      complex(wp) :: tractions(size(x))
+      real(wp) :: pressure(size(x)), shear(size(x))
       integer :: i
 
       pressure = self%contact%roots(x)*self%contact%rest%continued(x)
       if (self%has_ratio) then
          shear = self%limit%at(x)*pressure
          do i = 1, size(self%stick)
-            if (.not. self%stick(i)%contains_place(x)) cycle
-            lack = self%stick(i)%roots(x)*self%stick(i)%rest%continued(x)
-            if (.not. all(self%stick(i)%rooted)) lack = lack*pressure
-            shear = shear - lack
+            associate (zone => self%stick(i), first => count(x <= self%stick(i)%edge(1)) + 1, &
+                       last => count(x < self%stick(i)%edge(2)))
+               associate (lack => zone%roots(x(first:last))*zone%rest%continued(x(first:last)))
+                  if (all(zone%rooted)) then
+                     shear(first:last) = shear(first:last) - lack
+                  else
+                     shear(first:last) = shear(first:last) - lack*pressure(first:last)
+                  end if
+               end associate
+            end associate
          end do
-         tractions = cmplx(pressure, shear, wp)
       else
-         tractions = cmplx(pressure, self%contact%roots(x)*self%shear_rest%continued(x), wp)
+         shear = self%contact%roots(x)*self%shear_rest%continued(x)
       end if
+      tractions = cmplx(pressure, shear, wp)
    end function tractions
 
    !> Append the elements of a patch.
@@ -754,17 +764,18 @@ contains
                              weight(4) = [0.34785484513745386_wp, 0.65214515486254614_wp, 0.65214515486254614_wp, &
                                           0.34785484513745386_wp]
       real(wp) :: diagonal(size(knots)), beside(size(knots) - 1), factor
-      complex(wp) :: there(4)
+      complex(wp), dimension(4, size(knots) - 1) :: there
       integer :: i, n
 
       n = size(knots)
+      there = reshape(patch%tractions([(knots(i) + 0.5_wp*(knots(i + 1) - knots(i))*(1.0_wp + place), i=1, n - 1)]), shape(there))
       diagonal = 0.0_wp
       values = 0.0_wp
       do i = 1, n - 1
          associate (length => knots(i + 1) - knots(i))
-            there = patch%tractions(knots(i) + 0.5_wp*length*(1.0_wp + place))*weight*length
-            values(i) = values(i) + 0.25_wp*sum(there*(1.0_wp - place))
-            values(i + 1) = values(i + 1) + 0.25_wp*sum(there*(1.0_wp + place))
+            there(:, i) = there(:, i)*weight*length
+            values(i) = values(i) + 0.25_wp*sum(there(:, i)*(1.0_wp - place))
+            values(i + 1) = values(i + 1) + 0.25_wp*sum(there(:, i)*(1.0_wp + place))
             diagonal(i:i + 1) = diagonal(i:i + 1) + length/3.0_wp
             beside(i) = length/6.0_wp
          end associate
