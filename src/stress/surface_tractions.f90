@@ -641,6 +641,7 @@ contains
       logical :: is_knot(size(patch%arc))
       !> Nodes nearer to an edge, in intervals, are not used as ends; edges at interval ends are half an interval away.
       real(wp), parameter :: apart = 0.4_wp
+      real(wp) :: left
       integer :: i, number
 
       roots = [stick_edges(patch), pack(patch%contact%edge, patch%contact%rooted)]
@@ -654,8 +655,10 @@ contains
       knots(1) = points(1)
       number = 1
       do i = 2, size(points)
-         if (points(i) > knots(number)) &
-            call append(knots, number, [between(knots(number), points(i), roots, longest), points(i)])
+         left = knots(number)
+         if (.not. points(i) > left) cycle
+         call append_between(left, points(i), roots, longest, knots, number)
+         call append(knots, number, points(i:i))
       end do
       ! Between edges that differ by round-off there is no room for points.
       knots = pack(knots(:number), [.true., knots(2:number) > knots(:number - 1)])
@@ -714,44 +717,36 @@ contains
       end do
    end function merged
 
-   !> The knots between two points: see knots_of.
-   pure recursive function between(left, right, roots, longest) result(knots)
+   !> Append the knots between two points: see knots_of.
+   pure recursive subroutine append_between(left, right, roots, longest, knots, number)
       real(wp), intent(in) :: left, right, roots(:), longest
-      real(wp), allocatable :: knots(:)
+      real(wp), allocatable, intent(inout) :: knots(:)
+      integer, intent(inout) :: number
       integer, parameter :: parts = 54
       real(wp), parameter :: most = 1000.0_wp, ratio = sqrt(0.5_wp)
-      real(wp) :: distance
+      real(wp) :: distance, middle
+      logical :: is_root(2)
       integer :: i, pieces
 
-      if (any(is_at(left)) .and. any(is_at(right))) then
-         associate (middle => 0.5_wp*(left + right))
-            if (middle > left .and. middle < right) then
-               knots = [between(left, middle, roots, longest), middle, between(middle, right, roots, longest)]
-            else
-               allocate (knots(0))
-            end if
-         end associate
-      else if (any(is_at(left))) then
-         knots = [(left + (right - left)*ratio**i, i=parts, 1, -1)]
-      else if (any(is_at(right))) then
-         knots = [(right - (right - left)*ratio**i, i=1, parts)]
+      is_root = [any(abs(roots - left) <= 0.0_wp), any(abs(roots - right) <= 0.0_wp)]
+      if (all(is_root)) then
+         middle = 0.5_wp*(left + right)
+         if (.not. (middle > left .and. middle < right)) return
+         call append_between(left, middle, roots, longest, knots, number)
+         call append(knots, number, [middle])
+         call append_between(middle, right, roots, longest, knots, number)
+      else if (is_root(1)) then
+         call append(knots, number, [(left + (right - left)*ratio**i, i=parts, 1, -1)])
+      else if (is_root(2)) then
+         call append(knots, number, [(right - (right - left)*ratio**i, i=1, parts)])
       else
          distance = longest
          if (size(roots) > 0) distance = min(distance, 0.5_wp*minval(abs(left - roots)), 0.5_wp*minval(abs(right - roots)))
-         pieces = 1
-         if (distance < right - left) pieces = ceiling(min((right - left)/distance, most)*(1.0_wp - 1.0e-9_wp))
-         knots = [(left + (right - left)*i/pieces, i=1, pieces - 1)]
+         if (.not. distance < right - left) return
+         pieces = ceiling(min((right - left)/distance, most)*(1.0_wp - 1.0e-9_wp))
+         call append(knots, number, [(left + (right - left)*i/pieces, i=1, pieces - 1)])
       end if
-
-   contains
-
-      pure function is_at(point)
-         real(wp), intent(in) :: point
-         logical :: is_at(size(roots))
-
-         is_at = .not. abs(roots - point) > 0.0_wp
-      end function is_at
-   end function between
+   end subroutine append_between
 
    !> Values at the knots of the continuous piecewise linear function with the least mean square distance to the tractions;
    !> zero at rooted ends.
