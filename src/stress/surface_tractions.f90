@@ -93,14 +93,16 @@ contains
       integer, parameter :: fewest_in_zone = 60
       integer, allocatable :: nodes(:)
       logical, allocatable :: done(:)
-      integer :: fewest, i, j, k
+      type(traction_elements_type), allocatable :: parts(:)
+      integer :: fewest, i, j, k, number
 
-      allocate (elements%from(0), elements%to(0), elements%edges(0), elements%first(0), elements%last(0))
       patch%turn = zones%turn
       patch%graded = maxval(width) - minval(width) > near*maxval(width)
       call assign_nodes(arc, width, abs(pressure) > 0.0_wp .or. abs(shear) > 0.0_wp, zones, edges, sharp, owner)
       fewest = max(zones%fewest_elements/max(size(edges, 2), 1), min(zones%fewest_elements, fewest_in_zone))
       allocate (done(size(edges, 2)), source=.false.)
+      allocate (parts(size(edges, 2)))
+      number = 0
       do j = 1, size(arc)
          ! Each patch at its first node: from left to right.
          i = owner(j)
@@ -115,8 +117,16 @@ contains
          patch%contact = zone_type(edge=edges(:, i), rooted=.not. sharp(:, i), rest=table_type())
          patch%counted = i > size(zones%contact, 2)
          call fit_patch(patch, zones)
-         call add_elements(patch, min(longest, (patch%contact%edge(2) - patch%contact%edge(1))/fewest), elements)
+         number = number + 1
+         call find_elements(patch, min(longest, (patch%contact%edge(2) - patch%contact%edge(1))/fewest), parts(number))
       end do
+      elements%from = [(parts(k)%from, k=1, number)]
+      elements%to = [(parts(k)%to, k=1, number)]
+      elements%first = [(parts(k)%first, k=1, number)]
+      elements%last = [(parts(k)%last, k=1, number)]
+      elements%edges = [(parts(k)%edges, k=1, number)]
+      elements%sharp = any(parts%sharp)
+      elements%singular = any(parts%singular)
    end subroutine find_traction_elements
 
    !> Contact zone of each loaded node, 0 without load: the nearest; nodes outside all zones form new ones.
@@ -605,8 +615,8 @@ contains
       tractions = cmplx(pressure, shear, wp)
    end function tractions
 
-   !> Append the elements of a patch.
-   subroutine add_elements(patch, longest, elements)
+   !> Find the elements of a patch.
+   subroutine find_elements(patch, longest, elements)
       type(patch_type), intent(in) :: patch
       real(wp), intent(in) :: longest
       type(traction_elements_type), intent(inout) :: elements
@@ -616,19 +626,21 @@ contains
 
       knots = knots_of(patch, longest)
       n = size(knots)
-      if (n < 2) return
-      allocate (values(n))
-      values(:) = projected(patch, knots)
-      call balance(patch, knots, values)
-      if (abs(patch%turn)*(knots(n) - knots(1)) > 0.0_wp) call balance_inclined(patch, knots, values)
-      elements%from = [elements%from, knots(:n - 1)]
-      elements%to = [elements%to, knots(2:)]
-      elements%first = [elements%first, values(:n - 1)]
-      elements%last = [elements%last, values(2:)]
-      elements%edges = [elements%edges, patch%contact%edge(1), stick_edges(patch), patch%contact%edge(2)]
-      elements%sharp = elements%sharp .or. abs(values(1)) > 0.0_wp .or. abs(values(n)) > 0.0_wp
-      elements%singular = elements%singular .or. abs(aimag(values(1))) > 0.0_wp .or. abs(aimag(values(n))) > 0.0_wp
-   end subroutine add_elements
+      allocate (values(n), source=(0.0_wp, 0.0_wp))
+      allocate (elements%edges(0))
+      if (n > 1) then
+         values(:) = projected(patch, knots)
+         call balance(patch, knots, values)
+         if (abs(patch%turn)*(knots(n) - knots(1)) > 0.0_wp) call balance_inclined(patch, knots, values)
+         elements%edges = [patch%contact%edge(1), stick_edges(patch), patch%contact%edge(2)]
+      end if
+      elements%from = knots(:n - 1)
+      elements%to = knots(2:)
+      elements%first = values(:n - 1)
+      elements%last = values(2:)
+      elements%sharp = abs(values(1)) > 0.0_wp .or. abs(values(n)) > 0.0_wp
+      elements%singular = abs(aimag(values(1))) > 0.0_wp .or. abs(aimag(values(n))) > 0.0_wp
+   end subroutine find_elements
 
    !> Ends of the elements of a patch: its nodes and edges, and points between them so that no element is longer than half its
    !> distance from the next rooted edge (a ratio of the root of 1/2 beside it) or than `longest`: sigma_xx on the surface has
