@@ -596,8 +596,12 @@ contains
       fields%motion = self%motion_unit*motion_of(self, right%motion, unknowns)
       fields%pressure = self%stress*self%found(:, 1)
       fields%shear = self%stress*self%found(:, 2)
-      fields%normal = self%length*self%found(:, 3) - model%rigid_normal(fields)
-      fields%tangential = self%length*self%found(:, 4) - model%rigid_tangential(fields)
+      fields%normal = self%length*self%found(:, 3)
+      fields%tangential = self%length*self%found(:, 4)
+      if (model%has_rigid_parts()) then
+         fields%normal = fields%normal - model%rigid_normal(fields)
+         fields%tangential = fields%tangential - model%rigid_tangential(fields)
+      end if
       fields%force = 0.0_wp
       do i = 1, motion_count
          if (.not. model%moves(i)) cycle
