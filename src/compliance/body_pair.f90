@@ -137,9 +137,10 @@ contains
          end do
          if (self%deforms(lower_body)) upper = by_block + upper
          by_block = upper
+         ! Those of equal bodies cancel.
+         if (.not. self%has_block(block_wt)) by_block(:, block_wt) = 0.0_wp
+         if (.not. self%has_block(block_up)) by_block(:, block_up) = 0.0_wp
       end if
-      if (.not. self%has_block(block_wt)) by_block(:, block_wt) = 0.0_wp
-      if (.not. self%has_block(block_up)) by_block(:, block_up) = 0.0_wp
    end subroutine products
 
    !> See mfv_compliance.

@@ -114,7 +114,8 @@ contains
             work(k) = self%straight(k)*here + self%mirrored(k)*conjg(there)
          end do
       else
-         work = self%straight*work
+         ! Real times complex numbers, which the compiler would multiply as complex ones.
+         work = cmplx(self%straight*real(work, wp), self%straight*aimag(work), wp)
       end if
       call complex_transform(backward, work, values)
       by_x = real(values(:n), wp)
@@ -129,9 +130,14 @@ contains
       real(wp), intent(in) :: x(:), y(:)
       real(wp), intent(out) :: largest_x, largest_y, factor
       integer, parameter :: most = 500
+      integer :: i
 
-      largest_x = maxval(abs(x))
-      largest_y = maxval(abs(y))
+      largest_x = 0.0_wp
+      largest_y = 0.0_wp
+      do i = 1, size(x)
+         largest_x = max(largest_x, abs(x(i)))
+         largest_y = max(largest_y, abs(y(i)))
+      end do
       factor = 1.0_wp
       if (largest_x > 0.0_wp .and. largest_y > 0.0_wp) &
          factor = scale(1.0_wp, min(max(exponent(largest_x) - exponent(largest_y), -most), most))

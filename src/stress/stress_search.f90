@@ -164,13 +164,14 @@ contains
       subroutine refine_between(from, to)
          real(wp), intent(in) :: from, to
          real(wp), parameter :: golden = 0.6180339887498949_wp, nearly = 1.0e-5_wp
-         real(wp) :: left, right, inner(2), found(2)
+         real(wp) :: left, right, inner(2), found(2), least
 
          left = from
          right = to
+         least = nearly*interior%half_width()
          inner = [right - golden*(right - left), left + golden*(right - left)]
          found = [stress_at(inner(1)), stress_at(inner(2))]
-         do while (right - left > max(nearly*interior%half_width(), 4.0_wp*epsilon(left)*max(abs(left), abs(right))))
+         do while (right - left > max(least, 4.0_wp*epsilon(left)*max(abs(left), abs(right))))
             if (found(1) >= found(2)) then
                right = inner(2)
                inner = [right - golden*(right - left), inner(1)]

@@ -91,30 +91,42 @@ contains
       integer, allocatable :: owner(:)
       real(wp), parameter :: near = 1.0e-6_wp
       integer, parameter :: fewest_in_zone = 60
+      integer, allocatable :: nodes(:)
       logical, allocatable :: done(:)
-      integer :: fewest, i, j
+      type(traction_elements_type), allocatable :: parts(:)
+      integer :: fewest, i, j, k, number
 
-      allocate (elements%from(0), elements%to(0), elements%edges(0), elements%first(0), elements%last(0))
       patch%turn = zones%turn
       patch%graded = maxval(width) - minval(width) > near*maxval(width)
       call assign_nodes(arc, width, abs(pressure) > 0.0_wp .or. abs(shear) > 0.0_wp, zones, edges, sharp, owner)
       fewest = max(zones%fewest_elements/max(size(edges, 2), 1), min(zones%fewest_elements, fewest_in_zone))
       allocate (done(size(edges, 2)), source=.false.)
+      allocate (parts(size(edges, 2)))
+      number = 0
       do j = 1, size(arc)
          ! Each patch at its first node: from left to right.
          i = owner(j)
          if (i == 0) cycle
          if (done(i)) cycle
          done(i) = .true.
-         patch%arc = pack(arc, owner == i)
-         patch%width = pack(width, owner == i)
-         patch%pressure = pack(pressure, owner == i)
-         patch%shear = pack(shear, owner == i)
+         nodes = pack([(k, k=1, size(arc))], owner == i)
+         patch%arc = arc(nodes)
+         patch%width = width(nodes)
+         patch%pressure = pressure(nodes)
+         patch%shear = shear(nodes)
          patch%contact = zone_type(edge=edges(:, i), rooted=.not. sharp(:, i), rest=table_type())
          patch%counted = i > size(zones%contact, 2)
          call fit_patch(patch, zones)
-         call add_elements(patch, min(longest, (patch%contact%edge(2) - patch%contact%edge(1))/fewest), elements)
+         number = number + 1
+         call find_elements(patch, min(longest, (patch%contact%edge(2) - patch%contact%edge(1))/fewest), parts(number))
       end do
+      elements%from = [(parts(k)%from, k=1, number)]
+      elements%to = [(parts(k)%to, k=1, number)]
+      elements%first = [(parts(k)%first, k=1, number)]
+      elements%last = [(parts(k)%last, k=1, number)]
+      elements%edges = [(parts(k)%edges, k=1, number)]
+      elements%sharp = any(parts%sharp)
+      elements%singular = any(parts%singular)
    end subroutine find_traction_elements
 
    !> Contact zone of each loaded node, 0 without load: the nearest; nodes outside all zones form new ones.
@@ -229,7 +241,7 @@ contains
       do side = 1, 2
          outermost = merge(1, size(patch%arc), side == 1)
          if (any(patch%stick%contains_place(patch%arc(outermost)))) cycle
-         patch%contact%power(side) = 0.5_wp + (2*side - 3)*exponent_shift(patch%arc(outermost))
+         patch%contact%power(side:side) = 0.5_wp + (2*side - 3)*exponent_shift(patch%arc(outermost:outermost))
       end do
       do i = 1, size(patch%stick)
          patch%stick(i)%power = 0.5_wp + [1, -1]*exponent_shift(patch%stick(i)%edge)
@@ -237,10 +249,11 @@ contains
 
    contains
 
-      elemental real(wp) function exponent_shift(place)
-         real(wp), intent(in) :: place
+      pure function exponent_shift(places)
+         real(wp), intent(in) :: places(:)
+         real(wp) :: exponent_shift(size(places))
 
-         exponent_shift = root_shift(beta*patch%limit%at(place))
+         exponent_shift = root_shift(beta*patch%limit%at(places))
       end function exponent_shift
    end subroutine find_powers
 
@@ -511,38 +524,42 @@ contains
       end associate
    end function mean_roots
 
-   !> Linear interpolation in a table, constant outside; 0 for an empty one.
-   elemental real(wp) function at(self, x)
+   !> Linear interpolation in a table at ascending `x`, constant outside; 0 for an empty one.
+   pure function at(self, x) result(values)
       class(table_type), intent(in) :: self
-      real(wp), intent(in) :: x
-      integer :: i, n
+      real(wp), intent(in) :: x(:)
+      real(wp) :: values(size(x))
+      integer :: before(size(x)), i, n
 
-      at = 0.0_wp
+      values = 0.0_wp
       n = size(self%x)
       if (n == 0) return
-      i = interval_of(self%x, x)
-      if (i == 0) at = self%value(1)
-      if (i == n) at = self%value(n)
-      if (i > 0 .and. i < n) at = along(self, i, x)
+      before = last_before(self%x, x)
+      do i = 1, size(x)
+         if (before(i) == 0 .or. before(i) == n) then
+            values(i) = self%value(max(1, before(i)))
+         else
+            values(i) = along(self, before(i), x(i))
+         end if
+      end do
    end function at
 
    !> The same with linear extrapolation, limited to between half and twice the last value.
-   elemental real(wp) function continued(self, x)
+   pure function continued(self, x) result(values)
       class(table_type), intent(in) :: self
-      real(wp), intent(in) :: x
-      integer :: i, n
-      real(wp) :: bounds(2)
+      real(wp), intent(in) :: x(:)
+      real(wp) :: values(size(x)), bounds(2)
+      integer :: before(size(x)), i, n
 
+      values = self%at(x)
       n = size(self%x)
-      if (n < 2) then
-         continued = self%at(x)
-         return
-      end if
-      i = interval_of(self%x, x)
-      continued = along(self, max(1, min(i, n - 1)), x)
-      if (i > 0 .and. i < n) return
-      bounds = [0.5_wp, 2.0_wp]*self%value(max(1, i))
-      continued = min(max(continued, minval(bounds)), maxval(bounds))
+      if (n < 2) return
+      before = last_before(self%x, x)
+      do i = 1, size(x)
+         if (before(i) > 0 .and. before(i) < n) cycle
+         bounds = [0.5_wp, 2.0_wp]*self%value(max(1, before(i)))
+         values(i) = min(max(along(self, max(1, min(before(i), n - 1)), x(i)), minval(bounds)), maxval(bounds))
+      end do
    end function continued
 
    !> The straight line through the points i and i + 1 of a table.
@@ -554,47 +571,52 @@ contains
       along = self%value(i) + (self%value(i + 1) - self%value(i))*(x - self%x(i))/(self%x(i + 1) - self%x(i))
    end function along
 
-   !> Index of the last of ascending positions not beyond `x`, 0 for none, by bisection.
-   pure integer function interval_of(positions, x) result(low)
-      real(wp), intent(in) :: positions(:), x
-      integer :: high, middle
+   !> Indices of the last of ascending positions not beyond ascending `x`, 0 for none.
+   pure function last_before(positions, x) result(last)
+      real(wp), intent(in) :: positions(:), x(:)
+      integer :: last(size(x)), i, j
 
-      low = 0
-      high = size(positions) + 1
-      do while (high - low > 1)
-         middle = (low + high)/2
-         if (positions(middle) <= x) then
-            low = middle
-         else
-            high = middle
-         end if
+      j = 0
+      do i = 1, size(x)
+         do while (j < size(positions))
+            if (positions(j + 1) > x(i)) exit
+            j = j + 1
+         end do
+         last(i) = j
       end do
-   end function interval_of
+   end function last_before
 
-   !> p + i tau of a patch at a point.
-   elemental complex(wp) function tractions(self, x)
+   !> p + i tau of a patch at ascending places.
+   pure function tractions(self, x)
       class(patch_type), intent(in) :: self
-      real(wp), intent(in) :: x
-      real(wp) :: pressure, shear, lack
+      real(wp), intent(in) :: x(:)
+      complex(wp) :: tractions(size(x))
+      real(wp) :: pressure(size(x)), shear(size(x))
       integer :: i
 
       pressure = self%contact%roots(x)*self%contact%rest%continued(x)
       if (self%has_ratio) then
          shear = self%limit%at(x)*pressure
          do i = 1, size(self%stick)
-            if (.not. self%stick(i)%contains_place(x)) cycle
-            lack = self%stick(i)%roots(x)*self%stick(i)%rest%continued(x)
-            if (.not. all(self%stick(i)%rooted)) lack = lack*pressure
-            shear = shear - lack
+            associate (zone => self%stick(i), first => count(x <= self%stick(i)%edge(1)) + 1, &
+                       last => count(x < self%stick(i)%edge(2)))
+               associate (lack => zone%roots(x(first:last))*zone%rest%continued(x(first:last)))
+                  if (all(zone%rooted)) then
+                     shear(first:last) = shear(first:last) - lack
+                  else
+                     shear(first:last) = shear(first:last) - lack*pressure(first:last)
+                  end if
+               end associate
+            end associate
          end do
-         tractions = cmplx(pressure, shear, wp)
       else
-         tractions = cmplx(pressure, self%contact%roots(x)*self%shear_rest%continued(x), wp)
+         shear = self%contact%roots(x)*self%shear_rest%continued(x)
       end if
+      tractions = cmplx(pressure, shear, wp)
    end function tractions
 
-   !> Append the elements of a patch.
-   subroutine add_elements(patch, longest, elements)
+   !> Find the elements of a patch.
+   subroutine find_elements(patch, longest, elements)
       type(patch_type), intent(in) :: patch
       real(wp), intent(in) :: longest
       type(traction_elements_type), intent(inout) :: elements
@@ -604,19 +626,21 @@ contains
 
       knots = knots_of(patch, longest)
       n = size(knots)
-      if (n < 2) return
-      allocate (values(n))
-      values(:) = projected(patch, knots)
-      call balance(patch, knots, values)
-      if (abs(patch%turn)*(knots(n) - knots(1)) > 0.0_wp) call balance_inclined(patch, knots, values)
-      elements%from = [elements%from, knots(:n - 1)]
-      elements%to = [elements%to, knots(2:)]
-      elements%first = [elements%first, values(:n - 1)]
-      elements%last = [elements%last, values(2:)]
-      elements%edges = [elements%edges, patch%contact%edge(1), stick_edges(patch), patch%contact%edge(2)]
-      elements%sharp = elements%sharp .or. abs(values(1)) > 0.0_wp .or. abs(values(n)) > 0.0_wp
-      elements%singular = elements%singular .or. abs(aimag(values(1))) > 0.0_wp .or. abs(aimag(values(n))) > 0.0_wp
-   end subroutine add_elements
+      allocate (values(n), source=(0.0_wp, 0.0_wp))
+      allocate (elements%edges(0))
+      if (n > 1) then
+         values(:) = projected(patch, knots)
+         call balance(patch, knots, values)
+         if (abs(patch%turn)*(knots(n) - knots(1)) > 0.0_wp) call balance_inclined(patch, knots, values)
+         elements%edges = [patch%contact%edge(1), stick_edges(patch), patch%contact%edge(2)]
+      end if
+      elements%from = knots(:n - 1)
+      elements%to = knots(2:)
+      elements%first = values(:n - 1)
+      elements%last = values(2:)
+      elements%sharp = abs(values(1)) > 0.0_wp .or. abs(values(n)) > 0.0_wp
+      elements%singular = abs(aimag(values(1))) > 0.0_wp .or. abs(aimag(values(n))) > 0.0_wp
+   end subroutine find_elements
 
    !> Ends of the elements of a patch: its nodes and edges, and points between them so that no element is longer than half its
    !> distance from the next rooted edge (a ratio of the root of 1/2 beside it) or than `longest`: sigma_xx on the surface has
@@ -629,6 +653,7 @@ contains
       logical :: is_knot(size(patch%arc))
       !> Nodes nearer to an edge, in intervals, are not used as ends; edges at interval ends are half an interval away.
       real(wp), parameter :: apart = 0.4_wp
+      real(wp) :: left
       integer :: i, number
 
       roots = [stick_edges(patch), pack(patch%contact%edge, patch%contact%rooted)]
@@ -642,8 +667,10 @@ contains
       knots(1) = points(1)
       number = 1
       do i = 2, size(points)
-         if (points(i) > knots(number)) &
-            call append(knots, number, [between(knots(number), points(i), roots, longest), points(i)])
+         left = knots(number)
+         if (.not. points(i) > left) cycle
+         call append_between(left, points(i), roots, longest, knots, number)
+         call append(knots, number, points(i:i))
       end do
       ! Between edges that differ by round-off there is no room for points.
       knots = pack(knots(:number), [.true., knots(2:number) > knots(:number - 1)])
@@ -702,44 +729,36 @@ contains
       end do
    end function merged
 
-   !> The knots between two points: see knots_of.
-   pure recursive function between(left, right, roots, longest) result(knots)
+   !> Append the knots between two points: see knots_of.
+   pure recursive subroutine append_between(left, right, roots, longest, knots, number)
       real(wp), intent(in) :: left, right, roots(:), longest
-      real(wp), allocatable :: knots(:)
+      real(wp), allocatable, intent(inout) :: knots(:)
+      integer, intent(inout) :: number
       integer, parameter :: parts = 54
       real(wp), parameter :: most = 1000.0_wp, ratio = sqrt(0.5_wp)
-      real(wp) :: distance
+      real(wp) :: distance, middle
+      logical :: is_root(2)
       integer :: i, pieces
 
-      if (any(is_at(left)) .and. any(is_at(right))) then
-         associate (middle => 0.5_wp*(left + right))
-            if (middle > left .and. middle < right) then
-               knots = [between(left, middle, roots, longest), middle, between(middle, right, roots, longest)]
-            else
-               allocate (knots(0))
-            end if
-         end associate
-      else if (any(is_at(left))) then
-         knots = [(left + (right - left)*ratio**i, i=parts, 1, -1)]
-      else if (any(is_at(right))) then
-         knots = [(right - (right - left)*ratio**i, i=1, parts)]
+      is_root = [any(abs(roots - left) <= 0.0_wp), any(abs(roots - right) <= 0.0_wp)]
+      if (all(is_root)) then
+         middle = 0.5_wp*(left + right)
+         if (.not. (middle > left .and. middle < right)) return
+         call append_between(left, middle, roots, longest, knots, number)
+         call append(knots, number, [middle])
+         call append_between(middle, right, roots, longest, knots, number)
+      else if (is_root(1)) then
+         call append(knots, number, [(left + (right - left)*ratio**i, i=parts, 1, -1)])
+      else if (is_root(2)) then
+         call append(knots, number, [(right - (right - left)*ratio**i, i=1, parts)])
       else
          distance = longest
          if (size(roots) > 0) distance = min(distance, 0.5_wp*minval(abs(left - roots)), 0.5_wp*minval(abs(right - roots)))
-         pieces = 1
-         if (distance < right - left) pieces = ceiling(min((right - left)/distance, most)*(1.0_wp - 1.0e-9_wp))
-         knots = [(left + (right - left)*i/pieces, i=1, pieces - 1)]
+         if (.not. distance < right - left) return
+         pieces = ceiling(min((right - left)/distance, most)*(1.0_wp - 1.0e-9_wp))
+         call append(knots, number, [(left + (right - left)*i/pieces, i=1, pieces - 1)])
       end if
-
-   contains
-
-      pure function is_at(point)
-         real(wp), intent(in) :: point
-         logical :: is_at(size(roots))
-
-         is_at = .not. abs(roots - point) > 0.0_wp
-      end function is_at
-   end function between
+   end subroutine append_between
 
    !> Values at the knots of the continuous piecewise linear function with the least mean square distance to the tractions;
    !> zero at rooted ends.
@@ -752,17 +771,18 @@ contains
                              weight(4) = [0.34785484513745386_wp, 0.65214515486254614_wp, 0.65214515486254614_wp, &
                                           0.34785484513745386_wp]
       real(wp) :: diagonal(size(knots)), beside(size(knots) - 1), factor
-      complex(wp) :: there(4)
+      complex(wp), dimension(4, size(knots) - 1) :: there
       integer :: i, n
 
       n = size(knots)
+      there = reshape(patch%tractions([(knots(i) + 0.5_wp*(knots(i + 1) - knots(i))*(1.0_wp + place), i=1, n - 1)]), shape(there))
       diagonal = 0.0_wp
       values = 0.0_wp
       do i = 1, n - 1
          associate (length => knots(i + 1) - knots(i))
-            there = patch%tractions(knots(i) + 0.5_wp*length*(1.0_wp + place))*weight*length
-            values(i) = values(i) + 0.25_wp*sum(there*(1.0_wp - place))
-            values(i + 1) = values(i + 1) + 0.25_wp*sum(there*(1.0_wp + place))
+            there(:, i) = there(:, i)*weight*length
+            values(i) = values(i) + 0.25_wp*sum(there(:, i)*(1.0_wp - place))
+            values(i + 1) = values(i + 1) + 0.25_wp*sum(there(:, i)*(1.0_wp + place))
             diagonal(i:i + 1) = diagonal(i:i + 1) + length/3.0_wp
             beside(i) = length/6.0_wp
          end associate

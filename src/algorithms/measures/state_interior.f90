@@ -3,7 +3,7 @@ module mfv_state_interior
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
-   use mfv_interior, only: interior_type
+   use mfv_interior, only: has_interior, interior_type
    use mfv_kinds, only: wp
    use mfv_motions, only: bulk_motions
    use mfv_zone_edges, only: find_patches, patch_type
@@ -24,6 +24,9 @@ contains
       integer, intent(in), optional :: fewest_elements
       real(wp), dimension(model%nodes()) :: contact_edge, stick_edge
 
+      available = has_interior(model%scene%lower)
+      if (upper) available = has_interior(model%scene%upper)
+      if (.not. available) return
       call find_edges_at_nodes(model, state, contact_edge, stick_edge)
       call model%scene%interior(upper, model%arc, model%width, state%fields%pressure, state%fields%shear, contact_edge, &
                                 stick_edge, state%fields%motion(bulk_motions(merge(2, 1, upper))), interior, &

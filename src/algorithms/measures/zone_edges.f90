@@ -253,14 +253,22 @@ contains
    pure function zones_of(inside) result(zones)
       logical, intent(in) :: inside(:)
       type(zone_type), allocatable :: zones(:)
-      logical :: begins(size(inside)), ends(size(inside))
-      integer :: i
+      integer :: first(size(inside)), last(size(inside)), i, number
+      logical :: before
 
-      begins = inside .and. .not. eoshift(inside, -1)
-      ends = inside .and. .not. eoshift(inside, 1)
-      allocate (zones(count(begins)))
-      zones%first = pack([(i, i=1, size(inside))], begins)
-      zones%last = pack([(i, i=1, size(inside))], ends)
+      number = 0
+      before = .false.
+      do i = 1, size(inside)
+         if (inside(i) .and. .not. before) then
+            number = number + 1
+            first(number) = i
+         end if
+         if (inside(i)) last(number) = i
+         before = inside(i)
+      end do
+      allocate (zones(number))
+      zones%first = first(:number)
+      zones%last = last(:number)
    end function zones_of
 
    !> Edge of a contact patch on `side` (-1 left, 1 right), arc length from the origin of x, and its uncertainty, length.
@@ -341,7 +349,9 @@ contains
          direction = -slip_sign(state%status(next))
       end if
       if (.not. (abs(direction) > 0.0_wp .and. model%scene%friction%is_coulomb())) return
-      lack = model%static_friction*state%fields%pressure - direction*state%fields%shear
+      associate (i => zone%first, j => zone%last)
+         lack(i:j) = model%static_friction(i:j)*state%fields%pressure(i:j) - direction*state%fields%shear(i:j)
+      end associate
       if (last /= other .and. at_its_limit(last)) then
          if (at_its_limit(last - side)) then
             if (next /= last) edge = edge_by_slip(model, state, next, side, edge)

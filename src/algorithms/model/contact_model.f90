@@ -402,7 +402,7 @@ contains
 
       moved = 0.0_wp
       do i = 1, motion_count
-         moved = moved + (arm(:, i) - merge(1.0_wp, 0.0_wp, i == own))*motion(i)
+         if (abs(motion(i)) > 0.0_wp) moved = moved + (arm(:, i) - merge(1.0_wp, 0.0_wp, i == own))*motion(i)
       end do
    end function moved
 

@@ -71,7 +71,11 @@ contains
       if (.not. factor > 0.0_wp) factor = near(1, 1)/log_kernel(2.0_wp)
       ! Positive definite on surfaces shorter than four times the distance at which a force leaves no displacement.
       least = factor*(2.0_wp*log(16.0_wp*n) + 2.0_wp)
-      self%kernel = [(max(near(1, 1), least) - factor*log_kernel(2.0_wp*distance), distance=0, 4*n)]/unit
+      if (allocated(self%kernel)) deallocate (self%kernel)
+      allocate (self%kernel(4*n + 1))
+      do distance = 0, 4*n
+         self%kernel(distance + 1) = (max(near(1, 1), least) - factor*log_kernel(2.0_wp*distance))/unit
+      end do
       self%constant = near(1, 1)/unit - self%kernel(1)
       self%is_half_plane = compliance%is_half_plane
       if (allocated(self%contact)) deallocate (self%contact, self%held)

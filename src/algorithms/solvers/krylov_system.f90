@@ -17,7 +17,7 @@
 module mfv_krylov_system
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_compliance, only: block_up
-   use mfv_contact_fields, only: contact_fields_type, new_contact_fields
+   use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_system
    use mfv_gmres, only: gmres_type
@@ -112,7 +112,7 @@ contains
                      start%motion(self%free)/self%motion_unit(self%free)]
          call iterate(self, model, right, self%tolerance/margin, unknowns, singular)
          if (singular) return
-         response%state = fields_of(self, model, prescribed, right, unknowns)
+         call set_fields(self, model, prescribed, right, unknowns, response%state)
       end if
 
       call find_prescribed(constraints, model, .true., prescribed)
@@ -121,7 +121,7 @@ contains
       call iterate(self, model, right, merge(self%tolerance, self%rate_tolerance, constraints%kind == rates_of_loads)/margin, &
                    unknowns, singular)
       if (singular) return
-      response%rate = fields_of(self, model, prescribed, right, unknowns)
+      call set_fields(self, model, prescribed, right, unknowns, response%rate)
       associate (last => self%last(constraints%kind))
          last%pressure = self%found(:, 1)
          last%shear = self%found(:, 2)
@@ -367,6 +367,8 @@ contains
       do pass = 1, most_passes
          call find_residual(self, model, right, unknowns, rows)
          if (done .and. .not. checked) return
+         ! Rates in a large increment are zero.
+         if (all(abs(rows) <= 0.0_wp)) return
          call precondition(self, model, rows)
          reached = norm2(rows)
          fails = .not. ieee_is_finite(reached)
@@ -493,7 +495,7 @@ contains
       type(contact_model_type), intent(in) :: model
       real(wp) :: unit
 
-      if (.not. (any(abs(self%pressure) > 0.0_wp) .or. any(abs(self%shear) > 0.0_wp))) then
+      if (.not. (any(abs(self%pressure(self%contact)) > 0.0_wp) .or. any(abs(self%shear(self%contact)) > 0.0_wp))) then
          self%normal = 0.0_wp
          self%tangential = 0.0_wp
          return
@@ -581,21 +583,26 @@ contains
       call self%preconditioner%apply_held(rows(m + 1:))
    end subroutine precondition_tractions
 
-   !> Fields from the tractions and displacements in `found` and the motions. Prescribed forces and motions are exact.
-   type(contact_fields_type) function fields_of(self, model, prescribed, right, unknowns) result(fields)
+   !> Set fields to the tractions and displacements in `found` and the motions. Prescribed forces and motions are exact.
+   subroutine set_fields(self, model, prescribed, right, unknowns, fields)
       class(krylov_system_type), intent(in) :: self
       type(contact_model_type), intent(in) :: model
       type(prescribed_type), intent(in) :: prescribed
       type(right_side_type), intent(in) :: right
       real(wp), intent(in) :: unknowns(:)
+      type(contact_fields_type), intent(inout) :: fields
       integer :: i
 
-      fields = new_contact_fields(size(self%pressure))
       fields%motion = self%motion_unit*motion_of(self, right%motion, unknowns)
       fields%pressure = self%stress*self%found(:, 1)
       fields%shear = self%stress*self%found(:, 2)
-      fields%normal = self%length*self%found(:, 3) - model%rigid_normal(fields)
-      fields%tangential = self%length*self%found(:, 4) - model%rigid_tangential(fields)
+      fields%normal = self%length*self%found(:, 3)
+      fields%tangential = self%length*self%found(:, 4)
+      if (model%has_rigid_parts()) then
+         fields%normal = fields%normal - model%rigid_normal(fields)
+         fields%tangential = fields%tangential - model%rigid_tangential(fields)
+      end if
+      fields%force = 0.0_wp
       do i = 1, motion_count
          if (.not. model%moves(i)) cycle
          if (any(self%free == i)) then
@@ -605,6 +612,6 @@ contains
             fields%force(i) = model%resultant(i, fields%pressure, fields%shear)
          end if
       end do
-   end function fields_of
+   end subroutine set_fields
 
 end module mfv_krylov_system

@@ -132,7 +132,7 @@ contains
       integer, intent(in) :: order
       integer, parameter :: most_iterations = 60
       real(wp), parameter :: enough = 1.0e-16_wp
-      real(wp), allocatable :: symbol(:), work(:), residual(:), direction(:), image(:), solution(:)
+      real(wp), allocatable :: symbol(:), inverse(:), work(:), residual(:), direction(:), image(:), solution(:)
       complex(wp), allocatable :: spectrum(:)
       real(wp) :: first, last, now, curvature
       integer :: iteration
@@ -140,13 +140,14 @@ contains
       call make_symbol(kernel, order, symbol)
       self%order = 0
       if (.not. all(symbol > 0.0_wp)) return
+      inverse = 1.0_wp/symbol
       allocate (work(2*(size(symbol) - 1)), spectrum(size(symbol)))
       allocate (residual(order), direction(order), image(order), solution(order), source=0.0_wp)
       residual(1) = 1.0_wp
       last = 1.0_wp
       first = 0.0_wp
       do iteration = 1, most_iterations
-         call multiply(1.0_wp/symbol, residual, image)
+         call multiply(inverse, residual, image)
          now = dot_product(residual, image)
          if (iteration == 1) first = now
          direction = image + merge(now/last, 0.0_wp, iteration > 1)*direction
@@ -173,7 +174,7 @@ contains
          work(:order) = vector
          work(order + 1:) = 0.0_wp
          call real_transform(work, spectrum)
-         spectrum = factor*spectrum
+         spectrum = cmplx(factor*real(spectrum, wp), factor*aimag(spectrum), wp)
          call back_transform(spectrum, work)
          image = work(:order)/size(work)
       end subroutine multiply

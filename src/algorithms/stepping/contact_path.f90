@@ -161,8 +161,12 @@ contains
       self%model%scene%method%stepping = chosen_stepping(model)
       call new_contact_system(self%model, self%system)
       self%state = new_contact_state(model%nodes())
-      self%state%fields%motion(motion_approach) = model%nearest_approach(model%initial_gap)
-      call model%displace(self%state%fields)
+      associate (fields => self%state%fields)
+         fields%motion(motion_approach) = model%nearest_approach(model%initial_gap)
+         ! Without tractions, displacements are those by motions.
+         fields%normal = fields%normal - model%rigid_normal(fields)
+         fields%tangential = fields%tangential - model%rigid_tangential(fields)
+      end associate
       call self%certificate%find_applicable(model)
       self%record_events = record_events
    end subroutine new_contact_path

@@ -558,16 +558,18 @@ contains
       integer :: i
 
       associate (model => simulation%contact%model, state => simulation%contact%state%fields)
+         pressure = 0.0_wp
+         shear = 0.0_wp
          do i = 1, size(patches)
-            pressure = 0.0_wp
-            shear = 0.0_wp
             associate (first => patches(i)%first, last => patches(i)%last)
                pressure(first:last) = state%pressure(first:last)
                shear(first:last) = state%shear(first:last)
+               normal_force(i) = model%resultant(motion_approach, pressure, shear)
+               tangential_force(i) = model%resultant(motion_shift, pressure, shear)
+               peak_pressure(i) = maxval(pressure(first:last))
+               pressure(first:last) = 0.0_wp
+               shear(first:last) = 0.0_wp
             end associate
-            normal_force(i) = model%resultant(motion_approach, pressure, shear)
-            tangential_force(i) = model%resultant(motion_shift, pressure, shear)
-            peak_pressure(i) = maxval(pressure)
             peak_shear(i) = largest_shear(model, simulation%contact%state, patches(i))
          end do
       end associate

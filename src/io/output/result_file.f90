@@ -110,12 +110,19 @@ contains
       logical, intent(in), optional :: with_restart
       type(string_type), allocatable :: groups(:)
       type(field_type), allocatable :: fields(:), scales(:)
-      integer :: i
+      integer :: i, j
 
-      call find_scales(case, simulation, scales)
+      allocate (scales(scale_count))
+      do j = 1, scale_count
+         scales(j)%name = ''
+      end do
       groups = result_groups(simulation)
       do i = 1, size(groups)
          call group_fields(case, simulation, groups(i)%text, fields, observed)
+         ! The group of a scale precedes the others that use it.
+         do j = 1, scale_count
+            if (scale_group(j) == groups(i)%text) scales(j) = fields(field_named(fields, trim(scale_name(j))))
+         end do
          if (size(fields) > 0) call write_group(writer, groups(i)%text, fields, scales)
       end do
       if (.not. present(with_restart)) return
@@ -123,22 +130,5 @@ contains
       call restart_fields(simulation, fields)
       call write_group(writer, restart_group, fields, scales)
    end subroutine write_groups
-
-   !> The fields that are dimension scales: x of the nodes, record of the load history, intervals of the coarser meshes, number of
-   !> the cycle, number of the patch.
-   subroutine find_scales(case, simulation, scales)
-      type(case_type), intent(in) :: case
-      type(simulation_type), intent(in) :: simulation
-      type(field_type), allocatable, intent(out) :: scales(:)
-      type(field_type), allocatable :: fields(:)
-      integer :: i
-
-      allocate (scales(scale_count))
-      do i = 1, scale_count
-         scales(i)%name = ''
-         call group_fields(case, simulation, trim(scale_group(i)), fields)
-         if (size(fields) > 0) scales(i) = fields(field_named(fields, trim(scale_name(i))))
-      end do
-   end subroutine find_scales
 
 end module mfv_result_file
