@@ -21,7 +21,7 @@
 !> When nodes change, only the groups that contain them are updated, and the small matrix 1 + B M is factorised again.
 module mfv_patched_inverse
    use mfv_kinds, only: pi, wp
-   use mfv_lapack, only: dgemv, dgetrf, dgetrs, dpotrf, dpotri
+   use mfv_lapack, only: dgemm, dgemv, dgetrf, dgetrs, dpotrf, dpotri
    use mfv_toeplitz_inverse, only: toeplitz_inverse_type
    implicit none
    private
@@ -387,7 +387,7 @@ contains
       type(group_type), intent(inout) :: group
       integer, intent(in) :: points
       real(wp) :: polynomials(size(group%nodes), points)
-      integer :: i
+      integer :: i, n
 
       if (allocated(group%points)) then
          if (size(group%points) == points) return
@@ -396,11 +396,17 @@ contains
       allocate (group%points(points), group%columns(size(group%nodes), points))
       call choose_points(group%nodes, group%points)
       call set_polynomials(group%nodes, group%points, polynomials)
-      group%columns = polynomials
-      do i = 1, points
-         call apply_group(group, group%columns(:, i))
-      end do
-      group%products = matmul(transpose(polynomials), group%columns)
+      n = size(group%nodes)
+      if (allocated(group%stored)) then
+         call dgemm('N', 'N', n, points, n, 1.0_wp, group%stored, n, polynomials, n, 0.0_wp, group%columns, n)
+      else
+         group%columns = polynomials
+         do i = 1, points
+            call apply_group(group, group%columns(:, i))
+         end do
+      end if
+      allocate (group%products(points, points))
+      call dgemm('T', 'N', points, points, n, 1.0_wp, polynomials, n, group%columns, n, 0.0_wp, group%products, points)
    end subroutine set_columns
 
    !> Choose nodes next to the zeros of a Chebyshev polynomial on the length of a group; all nodes if they are enough.
@@ -481,7 +487,8 @@ contains
          associate (group => self%groups(i), first => self%groups(i)%points_before + 1, &
                     last => self%groups(i)%points_before + size(self%groups(i)%points))
             self%coupling(first:last, first:last) = 0.0_wp
-            self%factors(:, first:last) = matmul(self%coupling(:, first:last), group%products)
+            call dgemm('N', 'N', self%points, size(group%points), size(group%points), 1.0_wp, self%coupling(1, first), &
+                       self%points, group%products, size(group%points), 0.0_wp, self%factors(1, first), self%points)
          end associate
       end do
       do i = 1, self%points

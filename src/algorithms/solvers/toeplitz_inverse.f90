@@ -48,6 +48,8 @@ contains
       self%length = 0
       call make_room(self, order)
       if (is_far(self%order, order)) call find_predictor(self, kernel, order)
+      ! To much lower orders from the first one.
+      if (real(self%order, wp)**2 > 2.0_wp*real(order, wp)**2) self%order = 0
       if (self%order == 0 .and. order > 0) then
          self%order = 1
          self%predictor(1) = 1.0_wp
