@@ -17,6 +17,7 @@ module mfv_validity
    use mfv_stress_search, only: largest_type, largest_von_mises
    use mfv_strings, only: add_text, string_type, to_text
    use mfv_surface_warnings, only: warn_of_surface
+   use mfv_zone_edges, only: zones_of
    implicit none
    private
    public :: validity_warnings
@@ -44,7 +45,7 @@ contains
          call check_angle(simulation, 'lower', scene%lower, warnings)
          call check_angle(simulation, 'upper', scene%upper, warnings)
          call check_datum(simulation, scene, warnings)
-         call check_accuracy(scene, warnings)
+         call check_accuracy(simulation, scene, warnings)
          call warn_of_surface(simulation, .false., scene%lower, largest_angle, warnings)
          call warn_of_surface(simulation, .true., scene%upper, largest_angle, warnings)
          call check_yield(simulation, .false., scene%lower, warnings)
@@ -86,17 +87,24 @@ contains
                     to_text(largest_angle, 2)//' degrees')
    end subroutine check_angle
 
-   !> An accuracy for which equal intervals would have to be very small.
-   subroutine check_accuracy(scene, warnings)
+   !> An accuracy for which the program's equal intervals are too large: beyond the most nodes, or for several patches.
+   subroutine check_accuracy(simulation, scene, warnings)
+      type(simulation_type), intent(in) :: simulation
       type(scene_type), intent(in) :: scene
       type(string_type), allocatable, intent(inout) :: warnings(:)
-      integer :: wanted
+      integer :: wanted, patches
 
       if (.not. scene%mesh%nodes_by_accuracy .or. allocated(scene%mesh%ends) .or. .not. scene%friction%converges()) return
       wanted = scene%mesh%nodes_for(scene%method%accuracy)
-      if (wanted > scene%mesh%nodes) &
+      patches = size(zones_of(in_contact(simulation%contact%state%status)))
+      if (wanted > scene%mesh%nodes) then
          call add_text(warnings, 'accuracy='//to_text(scene%method%accuracy, 2)//' needs about '//to_text(real(wanted, wp), 2)// &
                        ' equal intervals; the mesh has '//to_text(scene%mesh%nodes)//": give nodes, or refine='edges'")
+      else if (patches > 1 .and. scene%method%accuracy > 0.0_wp) then
+         call add_text(warnings, 'accuracy='//to_text(scene%method%accuracy, 2)//' chooses the mesh for one patch; '// &
+                       to_text(patches)//' patches have '//to_text(simulation%contact%state%contact_nodes())// &
+                       ' nodes in all: give nodes')
+      end if
    end subroutine check_accuracy
 
    !> A default datum that another case would not have; and a datum inside the contact: the compliance of a flat contact of the
