@@ -40,6 +40,8 @@ module mfv_surface_tractions
    !> A piecewise linear function.
    type :: table_type
       real(wp), allocatable :: x(:), value(:)
+      !> Whether it is extrapolated from points as far apart as the distance from them, not from neighbours: on unequal intervals.
+      logical :: far_apart = .false.
    contains
       procedure :: at
       procedure :: continued
@@ -451,6 +453,7 @@ contains
          return
       end if
       zone%rest%x = pack(patch%arc, used)
+      zone%rest%far_apart = patch%graded
       if (patch%graded) then
          zone%rest%value = pack(values, used)/zone%mean_roots(zone%rest%x, pack(patch%width, used))
       else
@@ -459,16 +462,18 @@ contains
 
    contains
 
-      !> Widths of the intervals; of unequal ones at least some times that at the edge, but no more than a fraction of the zone,
-      !> where the mesh is not fine at the edge.
+      !> Widths of the intervals; of unequal ones at least half the distance of the third node from the edge: the mesh may be finest
+      !> elsewhere.
       function width_from(edge) result(width)
          real(wp), intent(in) :: edge
          real(wp) :: width(size(values))
-         real(wp), parameter :: times = 16.0_wp, most = 0.05_wp
+         integer, parameter :: few = 2
+         integer :: farther
 
          width = patch%width
-         if (patch%graded) width = max(width, min(times*width(minloc(abs(patch%arc - edge), dim=1)), &
-                                                  most*(zone%edge(2) - zone%edge(1))))
+         if (.not. patch%graded) return
+         farther = minloc(abs(patch%arc - edge), dim=1) + merge(few, -few, edge < zone%edge(2))
+         width = max(width, 0.5_wp*abs(patch%arc(max(1, min(farther, size(width)))) - edge))
       end function width_from
    end subroutine fit_zone
 
@@ -539,7 +544,7 @@ contains
          if (before(i) == 0 .or. before(i) == n) then
             values(i) = self%value(max(1, before(i)))
          else
-            values(i) = along(self, before(i), x(i))
+            values(i) = along(self, before(i), before(i) + 1, x(i))
          end if
       end do
    end function at
@@ -549,7 +554,7 @@ contains
       class(table_type), intent(in) :: self
       real(wp), intent(in) :: x(:)
       real(wp) :: values(size(x)), bounds(2)
-      integer :: before(size(x)), i, n
+      integer :: before(size(x)), i, last, other, n
 
       values = self%at(x)
       n = size(self%x)
@@ -557,18 +562,25 @@ contains
       before = last_before(self%x, x)
       do i = 1, size(x)
          if (before(i) > 0 .and. before(i) < n) cycle
-         bounds = [0.5_wp, 2.0_wp]*self%value(max(1, before(i)))
-         values(i) = min(max(along(self, max(1, min(before(i), n - 1)), x(i)), minval(bounds)), maxval(bounds))
+         last = max(1, before(i))
+         other = merge(2, n - 1, last == 1)
+         if (self%far_apart) then
+            do while (other > 1 .and. other < n .and. abs(self%x(other) - self%x(last)) < abs(x(i) - self%x(last)))
+               other = other + merge(1, -1, last == 1)
+            end do
+         end if
+         bounds = [0.5_wp, 2.0_wp]*self%value(last)
+         values(i) = min(max(along(self, last, other, x(i)), minval(bounds)), maxval(bounds))
       end do
    end function continued
 
-   !> The straight line through the points i and i + 1 of a table.
-   pure real(wp) function along(self, i, x)
+   !> The straight line through the points i and j of a table.
+   pure real(wp) function along(self, i, j, x)
       type(table_type), intent(in) :: self
-      integer, intent(in) :: i
+      integer, intent(in) :: i, j
       real(wp), intent(in) :: x
 
-      along = self%value(i) + (self%value(i + 1) - self%value(i))*(x - self%x(i))/(self%x(i + 1) - self%x(i))
+      along = self%value(i) + (self%value(j) - self%value(i))*(x - self%x(i))/(self%x(j) - self%x(i))
    end function along
 
    !> Indices of the last of ascending positions not beyond ascending `x`, 0 for none.
