@@ -315,3 +315,28 @@ def test_areas_by_large_increments_are_accurate_or_unknown(separates: bool) -> N
     if not separates:
         assert quick.loss_factor[-1] == pytest.approx(exact.loss_factor[-1], rel=1e-2)
         assert quick.normal_force_work[-1] == pytest.approx(exact.normal_force_work[-1], abs=1e-2 * exact.dissipation[-1])
+
+
+def test_yield_at_turning_points_is_noticed_or_said_to_be_unknown() -> None:
+    """The peak of the history yields, its ends do not."""
+    body = mfv.Body.half_plane(youngs_modulus=74100, poisson_ratio=0.33, yield_strength=150)
+    pad = mfv.Body.disk(127, youngs_modulus=74100, poisson_ratio=0.33)
+    history = mfv.History(normal_force=[100, 1000, 100], tangential_force=[10, 300, 10])
+    for states, words in (("steps", "is not checked at the turning points"), ("reversals", "exceeds its yield_strength")):
+        scene = mfv.Scene(
+            body,
+            pad,
+            friction=mfv.Friction.coulomb(0.6),
+            steps=[mfv.Step(normal_force=100)],
+            history=history,
+            output=mfv.Output(states=states),
+        )
+        assert words in scene.run(check=True).attributes["warnings"], states
+
+
+@pytest.mark.parametrize("accuracy, last, words", [(1e-3, 1e-3, ""), (1e-3, 1e-5, "nodes in each patch"), (1e-6, 1e-3, "equal intervals")])
+def test_a_mesh_too_coarse_for_the_accuracy_is_noticed(accuracy: float, last: float, words: str) -> None:
+    """One contact of its nodes; one that is unloaded to a tenth of its width; more nodes than the program takes."""
+    steps = [mfv.Step(normal_force=1e-3, friction=False), mfv.Step(normal_force=last)]
+    warnings = cylinder(*steps, mesh=mfv.Mesh(), solver=mfv.Solver(accuracy=accuracy)).run(check=True).attributes["warnings"]
+    assert ("accuracy=" in warnings and words in warnings) == bool(words)

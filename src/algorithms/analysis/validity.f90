@@ -11,7 +11,7 @@ module mfv_validity
                           control_displacement
    use mfv_node_status, only: in_contact
    use mfv_scene, only: scene_type
-   use mfv_simulation, only: simulation_type
+   use mfv_simulation, only: simulation_type, states_none, states_steps
    use mfv_slip_zones, only: contact_interval, needed_mesh, resolved_nodes, slip_record_type, nodes_at_edge
    use mfv_state_interior, only: state_interior
    use mfv_stress_search, only: largest_type, largest_von_mises
@@ -87,23 +87,30 @@ contains
                     to_text(largest_angle, 2)//' degrees')
    end subroutine check_angle
 
-   !> An accuracy for which the program's equal intervals are too large: beyond the most nodes, or for several patches.
+   !> An accuracy for which the program's equal intervals are too large: beyond the most nodes, or where the present contact is much
+   !> smaller than the mesh, or is one of patches.
    subroutine check_accuracy(simulation, scene, warnings)
       type(simulation_type), intent(in) :: simulation
       type(scene_type), intent(in) :: scene
       type(string_type), allocatable, intent(inout) :: warnings(:)
-      integer :: wanted, patches
+      !> Error of the tractions times nodes in contact, for up to three times the accuracy.
+      real(wp), parameter :: error_of_one = 0.08_wp
+      integer :: wanted, patches, nodes
+      character(:), allocatable :: needs
 
       if (.not. scene%mesh%nodes_by_accuracy .or. allocated(scene%mesh%ends) .or. .not. scene%friction%converges()) return
+      if (.not. scene%method%accuracy > 0.0_wp) return
       wanted = scene%mesh%nodes_for(scene%method%accuracy)
       patches = size(zones_of(in_contact(simulation%contact%state%status)))
+      nodes = simulation%contact%state%contact_nodes()
+      needs = 'accuracy='//to_text(scene%method%accuracy, 2)//' needs about '
       if (wanted > scene%mesh%nodes) then
-         call add_text(warnings, 'accuracy='//to_text(scene%method%accuracy, 2)//' needs about '//to_text(real(wanted, wp), 2)// &
-                       ' equal intervals; the mesh has '//to_text(scene%mesh%nodes)//": give nodes, or refine='edges'")
-      else if (patches > 1 .and. scene%method%accuracy > 0.0_wp) then
-         call add_text(warnings, 'accuracy='//to_text(scene%method%accuracy, 2)//' chooses the mesh for one patch; '// &
-                       to_text(patches)//' patches have '//to_text(simulation%contact%state%contact_nodes())// &
-                       ' nodes in all: give nodes')
+         call add_text(warnings, needs//to_text(real(wanted, wp), 2)//' equal intervals; the mesh has '// &
+                       to_text(scene%mesh%nodes)//": give nodes, or refine='edges'")
+      else if (nodes < patches*error_of_one/scene%method%accuracy) then
+         call add_text(warnings, needs//to_text(nint(3.0_wp*error_of_one/scene%method%accuracy))// &
+                       ' nodes in each patch of contact; now '//to_text(nodes)//' are in '//to_text(patches)// &
+                       trim(merge(' patch  ', ' patches', patches == 1))//': give nodes')
       end if
    end subroutine check_accuracy
 
@@ -349,8 +356,21 @@ contains
          call add_text(warnings, 'the largest von Mises stress of the '//merge('upper', 'lower', upper)//' body, '// &
                        to_text(largest%value, 4)//' '//where_it_is//', exceeds its yield_strength '// &
                        to_text(body%yield_strength)//': stresses and tractions are not valid beyond yield')
+      else if (has_history(simulation) .and. any(simulation%keep_states == [states_steps, states_none])) then
+         call add_text(warnings, 'yield of the '//merge('upper', 'lower', upper)//' body is not checked at the turning points '// &
+                       "of the load history, which are not saved: set states='reversals' in &output")
       end if
    end subroutine check_yield
+
+   !> Whether a step is a load history with turning points of its own, or a row of one.
+   pure logical function has_history(simulation)
+      type(simulation_type), intent(in) :: simulation
+      integer :: i
+
+      associate (steps => simulation%contact%model%scene%steps)
+         has_history = any(steps%is_passed) .or. any([(allocated(steps(i)%path), i=1, size(steps))])
+      end associate
+   end function has_history
 
    !> Largest von Mises stress of a body in a state; zero without an interior.
    type(largest_type) function largest_below(simulation, upper, state) result(largest)
