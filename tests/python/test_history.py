@@ -334,7 +334,9 @@ def test_yield_at_turning_points_is_noticed_or_said_to_be_unknown() -> None:
         assert words in scene.run(check=True).attributes["warnings"], states
 
 
-@pytest.mark.parametrize("accuracy, last, words", [(1e-3, 1e-3, ""), (1e-3, 1e-5, "nodes in each patch"), (1e-6, 1e-3, "equal intervals")])
+@pytest.mark.parametrize(
+    "accuracy, last, words", [(1e-3, 1e-3, ""), (1e-3, 1e-5, "nodes in each patch"), (1e-6, 1e-3, "equal intervals")]
+)
 def test_a_mesh_too_coarse_for_the_accuracy_is_noticed(accuracy: float, last: float, words: str) -> None:
     """One contact of its nodes; one that is unloaded to a tenth of its width; more nodes than the program takes."""
     steps = [mfv.Step(normal_force=1e-3, friction=False), mfv.Step(normal_force=last)]
