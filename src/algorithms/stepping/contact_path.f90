@@ -931,8 +931,7 @@ contains
       hint = ''
       associate (friction => self%model%scene%friction)
          if (friction%acts()) hint = trim(friction%law%explain_failure(self%model%compliance%modulus/self%model%interval()))
-         if (hint == '' .and. .not. friction%is_linear() .and. self%model%scene%method%accuracy > 0.0_wp) &
-            hint = '; a smaller accuracy may find one'
+         if (hint == '' .and. .not. friction%is_linear()) hint = '; another friction_tolerance in &solver may find one'
       end associate
       call self%end_here(MFV_NO_CONTINUATION, 'no admissible continuation: '//why//hint, error)
    end subroutine no_continuation

@@ -162,6 +162,8 @@ contains
          if (misled) change = least_shrink
          accepted = agrees .and. error <= tolerance .and. .not. misled
          if (accepted .or. length < shortest) exit
+         ! The error is that of the step, and an event may have ended this far before the length.
+         if (agrees .and. increment%step > shortest_step(path)) length = min(length, increment%step)
          length = length*max(change, least_shrink)
       end do
       increment%diverges = .not. accepted
