@@ -89,6 +89,104 @@ def test_the_worn_volume_is_that_of_the_friction_work() -> None:
         assert np.allclose(np.diff(result.cycles.worn_area), COEFFICIENT / MU * result.cycles.dissipation[:-1], rtol=1e-2)
 
 
+ALUMINIUM: dict[str, Any] = {"youngs_modulus": 74100, "poisson_ratio": 0.33}
+CHANGING = {"normal_force": [300, 450, 300, 150], "tangential_force": [100, 0, -100, 0]}
+
+
+def cycled(loads: dict[str, list[float]], *, cycles: int = 4, steady: float | None = None, **wear: Any) -> mfv.Result:
+    """Two elastic bodies, or a rigid one where the history has approach or rotation, under closed cycles."""
+    pad: dict[str, Any] = {"rigid": True} if {"approach", "rotation"} & set(loads) else ALUMINIUM
+    return mfv.Scene(
+        mfv.Body.half_plane(**ALUMINIUM),
+        mfv.Body.disk(50, **pad),
+        mesh=mfv.Mesh(nodes=101),
+        friction=mfv.Friction.coulomb(0.6),
+        wear=mfv.Wear(**{"law": "work", "coefficient": 2.0e-9, **wear}),
+        steps=[mfv.Step(normal_force=300)],
+        history=mfv.History(**loads, cycles=cycles, steady_tolerance=steady),
+        output=mfv.Output(states="none"),
+    ).run(check=True)
+
+
+@pytest.mark.parametrize("law", ["work", "archard"])
+@pytest.mark.parametrize(
+    "loads",
+    [
+        CHANGING,
+        {"tangential_force": [75, -75]},
+        {"shift": [0.02, -0.02]},
+        {"rotation": [0.004, 0, -0.004, 0], "tangential_force": [0, 60, 0, -60]},
+        {"approach": [0.016, 0.012], "tangential_force": [40, -40]},
+        {"normal_force": [300, 300, 0], "shift": [0.02, -0.02, 0]},
+    ],
+    ids=["force", "coupling", "sliding", "rocking", "approach", "separation"],
+)
+def test_wear_where_the_pressure_changes_within_the_cycle(law: str, loads: dict[str, list[float]]) -> None:
+    """The worn area is the coefficient times the work, and every node wears by its own, also if it is open at the end."""
+    result = cycled(loads, law=law, block=1)
+    factor = 2.0e-9 if law == "work" else 2.0e-9 / 0.6
+    assert result.observables.worn_area == pytest.approx(factor * result.cycles.dissipation.sum(), rel=1e-5)
+    one, two = (cycled(loads, law=law, block=1, cycles=cycles).state for cycles in (1, 2))
+    depth, work = two.wear_depth - one.wear_depth, two.friction_work - one.friction_work
+    np.testing.assert_allclose(depth, factor * work, rtol=1e-3, atol=1e-3 * depth.max())
+
+
+def test_wear_does_not_depend_on_the_row_where_the_cycle_starts() -> None:
+    """After the first cycle, which begins at another load."""
+    for wear in ({"block": 1, "coefficient": 1e-7}, {"coefficient": 1e-6}):
+        areas = []
+        for first in range(4):
+            result = cycled({name: row[first:] + row[:first] for name, row in CHANGING.items()}, cycles=30, **wear)
+            areas.append(result.observables.worn_area - result.cycles.worn_area[1])
+        assert max(areas) == pytest.approx(min(areas), rel=1e-3 if "block" in wear else 0.05), wear
+
+
+@pytest.mark.parametrize("coefficient", [1.0e-7, 4.0e-6])
+@pytest.mark.parametrize(
+    "loads",
+    [
+        CHANGING,
+        {"tangential_force": [75, -75]},
+        {"normal_force": [150, 450, 450, 450], "shift": [0, 0.02, -0.02, 0]},
+        {"normal_force": [450, 150], "shift": [0.02, -0.02]},
+        {"rotation": [0.004, 0, -0.004, 0], "tangential_force": [0, 60, 0, -60]},
+        {"approach": [0.016, 0.012], "tangential_force": [40, -40]},
+        {"normal_force": [300, 300, 0], "shift": [0.02, -0.02, 0]},
+    ],
+    ids=["force", "coupling", "low", "phase", "rocking", "approach", "separation"],
+)
+def test_blocks_where_the_pressure_changes_within_the_cycle(coefficient: float, loads: dict[str, list[float]]) -> None:
+    """200 cycles in blocks against single cycles: worn area and dissipation within 1.2 times the tolerance."""
+    exact = cycled(loads, cycles=200, coefficient=coefficient, block=1)
+    for tolerance in (0.05, 0.01):
+        blocks = cycled(loads, cycles=200, coefficient=coefficient, tolerance=tolerance)
+        assert len(blocks.cycles.block) < 100
+        for name in ("worn_area", "dissipation"):
+            limit = max(1.2 * tolerance, 0.02)
+            assert blocks.observables[name] == pytest.approx(exact.observables[name], rel=limit), (name, tolerance)
+        computed = np.sum(blocks.cycles.block * blocks.cycles.dissipation)
+        assert blocks.observables.worn_area == pytest.approx(coefficient * computed, rel=0.1)
+        assert blocks.observables.worn_area == pytest.approx(coefficient * blocks.observables.dissipation, rel=0.02)
+
+
+@pytest.mark.parametrize("block", [None, 10])
+def test_wear_that_goes_on_is_not_steady(block: int | None) -> None:
+    """The remaining wear must be within the tolerance, in long and in short blocks."""
+    full, ended = (
+        cycled({"shift": [-0.02, 0.02]}, cycles=1000, law="archard", coefficient=1.0e-8, block=block, steady=steady)
+        for steady in (None, 1.0e-3)
+    )
+    assert full.observables.cycles == 1000 == full.cycles.block.sum()
+    assert ended.observables.cycles == ended.cycles.block.sum()
+    assert ended.observables.worn_area == pytest.approx(full.observables.worn_area, rel=1.1e-3)
+
+
+def test_wear_that_has_ended_is_steady() -> None:
+    """In partial slip the slip zones lose their pressure. Single cycles end long before the last one."""
+    result = cycled({"tangential_force": [75, -75]}, cycles=2000, coefficient=1.0e-2, block=1, steady=0.05)
+    assert "steady after" in result.message and result.observables.cycles < 1500
+
+
 @pytest.mark.parametrize("law", ["work", "archard"])
 def test_the_dissipation_counts_all_cycles_of_the_blocks(law: str) -> None:
     """The worn area is the coefficient times the work of friction; the same cycle by cycle. The energy balance holds."""

@@ -181,7 +181,7 @@ contains
       type(cycle_type), intent(in) :: cycle
       real(wp), intent(inout) :: values(:)
 
-      call put(values, 'cycles', real(cycle%number, wp))
+      call put(values, 'cycles', real(cycle%number + cycle%block - 1, wp))
       call put(values, 'cycle_dissipation', cycle%dissipation())
       call put(values, 'first_cycle_dissipation', cycle%first_dissipation)
       call put(values, 'cycle_change', cycle%change)

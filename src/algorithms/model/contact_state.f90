@@ -24,6 +24,9 @@ module mfv_contact_state
       real(wp) :: dissipation = 0.0_wp, skipped_dissipation = 0.0_wp
       !> Work dissipated so far per unit of surface, force/length, shape (nodes).
       real(wp), allocatable :: friction_work(:)
+      !> With wear, in the present cycle: the sum of the magnitudes of the work per unit of surface, force/length, and that of
+      !> these times the pressure, force^2/length^3; both shape (nodes).
+      real(wp), allocatable :: cycle_work(:), pressure_work(:)
       !> Depth worn off both surfaces together, length, shape (nodes).
       real(wp), allocatable :: worn(:)
       !> Area worn off in blocks of cycles that change the pressures by more than the tolerance of the wear, length^2.
@@ -33,6 +36,8 @@ module mfv_contact_state
       procedure :: copy_from
       procedure :: friction_point
       procedure :: skip
+      procedure :: begin_cycle_work
+      procedure :: add_cycle_work
       procedure :: widen
       procedure :: contact_nodes
       procedure :: stick_nodes
@@ -51,6 +56,7 @@ contains
       allocate (state%slip_direction(nodes), source=0)
       allocate (state%memory(memory_size, nodes), source=0.0_wp)
       allocate (state%stuck_slip(nodes), state%friction_work(nodes), state%worn(nodes), source=0.0_wp)
+      allocate (state%cycle_work(nodes), state%pressure_work(nodes), source=0.0_wp)
    end function new_contact_state
 
    !> Set the statuses of the nodes of `mask`. A node that sticks holds at its present slip; one that slips at first contact has
@@ -84,6 +90,8 @@ contains
       self%dissipation = other%dissipation
       self%skipped_dissipation = other%skipped_dissipation
       self%friction_work = other%friction_work
+      self%cycle_work = other%cycle_work
+      self%pressure_work = other%pressure_work
       self%worn = other%worn
       self%coarsely_worn = other%coarsely_worn
    end subroutine copy_from
@@ -110,6 +118,25 @@ contains
       self%skipped_dissipation = self%skipped_dissipation + sum(width*work)
    end subroutine skip
 
+   !> Begin to sum the work of a cycle.
+   pure subroutine begin_cycle_work(self)
+      class(contact_state_type), intent(inout) :: self
+
+      self%cycle_work = 0.0_wp
+      self%pressure_work = 0.0_wp
+   end subroutine begin_cycle_work
+
+   !> Add the work of an increment from the state `before`.
+   pure subroutine add_cycle_work(self, before)
+      class(contact_state_type), intent(inout) :: self
+      type(contact_state_type), intent(in) :: before
+      real(wp), dimension(size(self%status)) :: work
+
+      work = abs(self%friction_work - before%friction_work)
+      self%cycle_work = self%cycle_work + work
+      self%pressure_work = self%pressure_work + 0.5_wp*max(before%fields%pressure + self%fields%pressure, 0.0_wp)*work
+   end subroutine add_cycle_work
+
    !> Add `extra` open nodes at either end; the caller fills in their displacements.
    pure subroutine widen(self, extra)
       class(contact_state_type), intent(inout) :: self
@@ -123,6 +150,8 @@ contains
       self%memory = reshape([(0.0_wp, i=1, memory_size*extra), self%memory, (0.0_wp, i=1, memory_size*extra)], &
                             [memory_size, size(self%status)])
       self%friction_work = [(0.0_wp, i=1, extra), self%friction_work, (0.0_wp, i=1, extra)]
+      self%cycle_work = [(0.0_wp, i=1, extra), self%cycle_work, (0.0_wp, i=1, extra)]
+      self%pressure_work = [(0.0_wp, i=1, extra), self%pressure_work, (0.0_wp, i=1, extra)]
       self%worn = [(0.0_wp, i=1, extra), self%worn, (0.0_wp, i=1, extra)]
    end subroutine widen
 

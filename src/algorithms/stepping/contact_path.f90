@@ -98,6 +98,7 @@ module mfv_contact_path
       procedure :: note_start
       procedure :: begin_motion
       procedure :: begin_wear
+      procedure :: wear_at_once
       procedure :: end_wear
       procedure :: record
       procedure :: start_segment
@@ -358,6 +359,14 @@ contains
          fields%force(motion_wear) = self%model%resultant(motion_wear, fields%pressure, fields%shear)
       end associate
    end subroutine begin_wear
+
+   !> Wear separated surfaces: only the gaps change.
+   subroutine wear_at_once(self)
+      class(contact_path_type), intent(inout) :: self
+
+      self%state%fields%motion(motion_wear) = 1.0_wp
+      call self%model%displace(self%state%fields)
+   end subroutine wear_at_once
 
    !> Make the present wear part of the gaps.
    subroutine end_wear(self)
@@ -764,6 +773,7 @@ contains
          end associate
          self%state%dissipation = self%state%dissipation + 0.5_wp*loss
       end if
+      if (self%model%scene%wear%acts()) call self%state%add_cycle_work(self%before)
       fastest = maxval(abs(slip_rate))
       do i = 1, size(slip_rate)
          self%state%slip_direction(i) = 0

@@ -239,8 +239,7 @@ contains
             return
          end if
          is_last = i == step%segments()
-         if (mod(i, step%turns()) == 0 .and. i > step%turns() .and. step%steady_tolerance > 0.0_wp) &
-            is_last = is_last .or. self%leg%cycle%change <= step%steady_tolerance
+         if (mod(i, step%turns()) == 0 .and. step%steady_tolerance > 0.0_wp) is_last = is_last .or. is_steady(self, step)
          if (keeps_state(self, step, is_last)) call take_snapshot(self, self%steps_done + 1, i)
          i = i + 1
       end associate
@@ -282,8 +281,12 @@ contains
       call self%contact%begin_wear(depth)
       targets = self%load
       targets(motion_wear) = load_type(control_displacement, 1.0_wp)
-      call begin_segment(self, targets, step, before, segments)
-      call apply_segment(self, error=error)
+      if (any(in_contact(self%contact%state%status))) then
+         call begin_segment(self, targets, step, before, segments)
+         call apply_segment(self, error=error)
+      else
+         call self%contact%wear_at_once()
+      end if
       call self%contact%end_wear()
       if (is_coarse) self%contact%state%coarsely_worn = self%contact%state%coarsely_worn + self%contact%model%force(depth)
       call self%contact%state%skip(self%contact%model%width, work_of_wear(self%contact%model, depth)*(cycles - 1)/cycles)
@@ -293,6 +296,24 @@ contains
       self%leg%cycle%dissipation_before = self%leg%cycle%dissipation()
       self%leg%cycle%block_before = cycles
    end subroutine apply_wear
+
+   !> Whether the cycles of a step have become steady. With wear also the change that the remaining cycles would make, each as much
+   !> as those of this block, must be within the tolerance: that of the tractions, and that of the worn area relative to itself.
+   logical function is_steady(self, step)
+      class(simulation_type), intent(in) :: self
+      type(step_type), intent(in) :: step
+      type(contact_state_type) :: start
+      real(wp) :: blocks, worn
+
+      associate (cycle => self%leg%cycle, tolerance => step%steady_tolerance)
+         is_steady = cycle%number > 1 .and. cycle%change <= tolerance
+         if (.not. (is_steady .and. wears(self, step))) return
+         blocks = real(step%cycles - self%leg%number/step%turns(), wp)/real(self%cycles(self%cycle_count)%block, wp)
+         worn = self%contact%model%force(self%contact%state%worn)
+         start = self%padded(self%marks(mark_cycle_start))
+         is_steady = blocks*change_since(self, start) <= tolerance .and. blocks*(worn - cycle%worn_area) <= tolerance*worn
+      end associate
+   end function is_steady
 
    !> Most cycles of a block of wear that begins with the present one, at most `remaining`. The first cycle of a step wears alone,
    !> since it often dissipates otherwise than those that follow. While the dissipation of computed cycles still changes by more
@@ -319,6 +340,7 @@ contains
       class(simulation_type), intent(inout) :: self
 
       self%leg%cycle%return = turning_point_here(self, ieee_value(1.0_wp, ieee_quiet_nan))
+      call self%contact%state%begin_cycle_work()
       call set_mark(self, mark_return, self%leg%number - 1)
    end subroutine restart_cycle
 

@@ -1,19 +1,22 @@
 !> The wear of a block of cycles, from the friction work of one of them.
 !>
-!> The depth of wear per cycle is k p s at every node, with the pressure p and the slip path s of the cycle. Over a block of N
-!> cycles the pressure moves from where material is removed to where it is not, and the contact may grow. With the slip path of the
-!> first cycle and the pressure P at the end of the block (implicit Euler, stable for any N) the depth is h = N k s P, where P
-!> solves the normal contact problem with an additional compliance N k s at every node (Johansson 1994, Int. J. Numer. Meth. Engng
-!> 37, 1393):
+!> The depth of wear per cycle is r, the coefficient times the friction work of the computed cycle (Archard: over the coefficient of
+!> friction, which is the integral of the pressure over the slip path). Over a block of N cycles the pressure moves from where
+!> material is removed to where it is not, and the contact may grow. With the mean pressure p in the first cycle, weighted by the
+!> work, and that pressure P after the block (implicit Euler, stable for any N), the depth is h = N r P/p, where P solves the normal
+!> contact problem with an additional compliance N r/p at every node (Johansson 1994, Int. J. Numer. Meth. Engng 37, 1393):
 !>
-!>     gap + C (P - p) - d + N k s P >= 0,   P >= 0,   one of them zero;   force of P = force of p, or d = 0,
+!>     gap + C (P - p) - d + N (r/p) P >= 0,   P >= 0,   one of them zero;   force of P = force of p, or d = 0.
 !>
-!> where gap is the present one, C the compliance and d the change of the approach. Coupling is neglected here, in the prediction
-!> only. The friction work per unit of surface gives s p. Nodes out of contact have the slip path of the nearest one in contact.
+!> C is the compliance and d the change of the approach. Nodes that do not slip have their present pressure p. The gap is zero at
+!> nodes that slip in the cycle or are in contact, else the present one. All nodes that slip in the cycle are thus loaded at once,
+!> and coupling is neglected, in the prediction of P - p only: short blocks wear by N r. Other nodes have the r/p of the nearest
+!> ones.
 module mfv_wear_block
    use mfv_compliance, only: block_wp
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_path, only: contact_path_type
+   use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: wp
    use mfv_lapack, only: dgesv
    use mfv_motions, only: motion_approach
@@ -23,8 +26,8 @@ module mfv_wear_block
    private
    public :: find_wear_block, work_of_wear
 
-   !> The problem of a block: nodes near the contact, their softness k s per cycle, present pressure, gap without any pressure on
-   !> them, arm and width, and the compliance between them; in terms of the modulus and the length of the mesh.
+   !> The problem of a block: nodes near the contact, their softness r/p per cycle, pressure p, gap without any pressure on them,
+   !> arm and width, and the compliance between them; in terms of the modulus and the length of the mesh.
    type :: problem_type
       integer, allocatable :: node(:)
       real(wp), allocatable :: softness(:), pressure(:), opening(:), arm(:), width(:), compliance(:, :)
@@ -104,7 +107,8 @@ contains
       end associate
    end function change_of
 
-   !> Gather the problem of a block, for the nodes up to `margin` nodes beyond the contact; without nodes if nothing is in contact.
+   !> Gather the problem of a block, for the nodes up to `margin` nodes beyond those that slip in the cycle or are in contact;
+   !> without nodes if there are none.
    subroutine gather(path, work, margin, problem)
       type(contact_path_type), intent(in) :: path
       real(wp), intent(in) :: work(:)
@@ -112,14 +116,15 @@ contains
       type(problem_type), intent(inout) :: problem
       real(wp), parameter :: loaded = 1.0e-6_wp
       logical :: contact(size(work)), known(size(work))
-      real(wp) :: rate(size(work)), softness(size(work)), gap(size(work))
+      real(wp) :: rate(size(work)), softness(size(work)), gap(size(work)), pressure(size(work))
       integer :: i, first, last
 
-      contact = in_contact(path%state%status)
-      associate (model => path%model, wear => path%model%scene%wear, pressure => path%state%fields%pressure)
+      associate (model => path%model, wear => path%model%scene%wear)
          rate = wear%coefficient*max(work, 0.0_wp)
          if (wear%law == wear_archard) rate = rate/max(model%kinetic_friction, tiny(1.0_wp))
-         known = contact .and. pressure > loaded*maxval(pressure)
+         call find_pressures(path%state, rate, pressure, known)
+         contact = known .or. in_contact(path%state%status)
+         known = known .or. contact .and. pressure > loaded*maxval(pressure)
          first = findloc(known, .true., dim=1)
          last = findloc(known, .true., dim=1, back=.true.)
          problem%node = pack([(i, i=max(1, first - margin), min(size(work), last + margin))], &
@@ -134,7 +139,7 @@ contains
          gap = model%gap(path%state%fields)
          associate (length => model%length(), stress => model%compliance%modulus, node => problem%node)
             problem%softness = softness(node)*stress/length
-            problem%pressure = merge(pressure(node), 0.0_wp, contact(node))/stress
+            problem%pressure = pressure(node)/stress
             problem%arm = model%normal_arm(node, motion_approach)
             problem%width = model%width(node)/length
             if (allocated(problem%compliance)) deallocate (problem%compliance)
@@ -145,6 +150,24 @@ contains
          end associate
       end associate
    end subroutine gather
+
+   !> The mean pressure of the cycle, weighted by the work, at nodes that slip, whose `rate` is above round-off; else the present
+   !> pressure.
+   pure subroutine find_pressures(state, rate, pressure, slips)
+      type(contact_state_type), intent(in) :: state
+      real(wp), intent(in) :: rate(:)
+      real(wp), intent(out) :: pressure(:)
+      logical, intent(out) :: slips(:)
+      real(wp), parameter :: round_off = 1.0e-9_wp
+
+      slips = rate > round_off*maxval(rate) .and. state%pressure_work > 0.0_wp
+      pressure = 0.0_wp
+      where (slips)
+         pressure = state%pressure_work/state%cycle_work
+      elsewhere(in_contact(state%status))
+         pressure = state%fields%pressure
+      end where
+   end subroutine find_pressures
 
    !> Of the values that are `known`, the one next to entry `i`, or the mean of two at the same distance; there is one.
    pure real(wp) function value_of_nearest(values, known, i) result(value)

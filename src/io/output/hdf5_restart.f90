@@ -274,6 +274,8 @@ contains
       call exchange_motions(self, state, motions(:motion_count)%optional)
       call self%exchange('skipped_dissipation', state%skipped_dissipation, 'energy dissipated in cycles that are not computed')
       call self%exchange('friction_work', state%friction_work, 'energy dissipated per unit of surface')
+      call self%exchange('cycle_work', state%cycle_work, 'magnitudes of the friction work of this cycle')
+      call self%exchange('pressure_work', state%pressure_work, 'the same times the pressure')
       call self%exchange('worn', state%worn, 'depth worn off both surfaces')
       call self%exchange('coarsely_worn', state%coarsely_worn, 'area worn off in blocks of cycles that are too large')
       call self%exchange('normal', state%fields%normal, 'separation of the surfaces by deformation and rotation')
