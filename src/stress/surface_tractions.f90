@@ -554,19 +554,19 @@ contains
       class(table_type), intent(in) :: self
       real(wp), intent(in) :: x(:)
       real(wp) :: values(size(x)), bounds(2)
-      integer :: before(size(x)), i, last, other, n
+      integer :: i, last, other, inwards, n
 
       values = self%at(x)
       n = size(self%x)
       if (n < 2) return
-      before = last_before(self%x, x)
       do i = 1, size(x)
-         if (before(i) > 0 .and. before(i) < n) cycle
-         last = max(1, before(i))
-         other = merge(2, n - 1, last == 1)
+         if (x(i) >= self%x(1) .and. x(i) < self%x(n)) cycle
+         last = merge(1, n, x(i) < self%x(1))
+         inwards = merge(1, -1, last == 1)
+         other = last + inwards
          if (self%far_apart) then
             do while (other > 1 .and. other < n .and. abs(self%x(other) - self%x(last)) < abs(x(i) - self%x(last)))
-               other = other + merge(1, -1, last == 1)
+               other = other + inwards
             end do
          end if
          bounds = [0.5_wp, 2.0_wp]*self%value(last)

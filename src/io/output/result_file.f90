@@ -119,11 +119,12 @@ contains
       groups = result_groups(simulation)
       do i = 1, size(groups)
          call group_fields(case, simulation, groups(i)%text, fields, observed)
+         if (size(fields) == 0) cycle
          ! The group of a scale precedes the others that use it.
          do j = 1, scale_count
             if (scale_group(j) == groups(i)%text) scales(j) = fields(field_named(fields, trim(scale_name(j))))
          end do
-         if (size(fields) > 0) call write_group(writer, groups(i)%text, fields, scales)
+         call write_group(writer, groups(i)%text, fields, scales)
       end do
       if (.not. present(with_restart)) return
       if (.not. with_restart) return
