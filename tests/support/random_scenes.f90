@@ -12,7 +12,7 @@ module test_random_scenes_support
    use mfv_scene
    implicit none
    private
-   public :: random_scene, random_pin, law_count, law_names, patience_type
+   public :: random_scene, random_pin, law_count, law_names, patience_type, generator_type
 
    integer, parameter :: law_count = 5
    character(*), parameter :: law_names(law_count) = [character(14) :: 'none', 'coulomb', 'static_kinetic', 'weakening', 'dahl']

@@ -91,7 +91,7 @@ contains
 
       opens_first = .false.
       if (increment%singular .or. .not. increment%ends_in_event .or. increment%step > near) return
-      first = increment%violations%step <= increment%reach
+      first = increment%violations%soonest <= increment%reach
       opens_first = all(nodes .or. .not. first) .and. all(increment%violations%kind == event_open .or. .not. first)
    end function opens_first
 

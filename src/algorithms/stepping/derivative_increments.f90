@@ -146,7 +146,7 @@ contains
       integer :: i
 
       associate (rate => increment%response%rate, violations => increment%violations)
-         ends = violations%step <= increment%reach
+         ends = violations%soonest <= increment%reach
          step = 0.0_wp
          do i = 1, size(step)
             if (ends(i)) step(i) = displacement(path, increment, explicit, change, i)

@@ -32,7 +32,7 @@ module mfv_first_violation
    private
    public :: apply_by_violations, most_residual
 
-   !> Most consecutive steps below the tie tolerance.
+   !> Most consecutive steps of zero length, and most below the tie tolerance, plus ten for each node.
    integer, parameter :: most_tiny_steps = 200
    !> Most increments within `milestone_spacing`, a fraction of a segment, plus ten for each node (endless stick-slip).
    integer, parameter :: most_events = 5000
@@ -94,7 +94,7 @@ contains
          if (allocated(error)) return
          nodes = size(path%state%status)
          if (progress%moved .and. progress%at_end) return
-         if (progress%tiny > most_tiny_steps .or. progress%since > most_events + 10*size(path%state%status)) then
+         if (progress%tiny > most_tiny_steps + 10*nodes .or. progress%since > most_events + 10*nodes) then
             call path%no_continuation('the load does not advance', error)
             return
          end if
@@ -292,7 +292,7 @@ contains
       call remember(iteration, path%state%status)
 
       associate (violations => increment%violations)
-         changing = violations%step <= increment%reach
+         changing = violations%soonest <= increment%reach
          if (iteration%one_at_a_time) then
             fastest = maxloc(violations%speed, dim=1, mask=changing)
             changing = .false.

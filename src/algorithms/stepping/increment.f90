@@ -31,7 +31,7 @@ module mfv_increment
       type(violations_type) :: violations
       !> Length as a fraction of the segment (of the stress drop); and whether a violation ends the increment.
       real(wp) :: step = 0.0_wp
-      !> Violations up to this step occur together at its end.
+      !> Violations that occur up to this step, within their round-off, occur together at its end.
       real(wp) :: reach = 0.0_wp
       logical :: ends_in_event = .false.
       !> Whether the linear system is singular, or the corrector diverges; the increment is then invalid.
@@ -110,7 +110,8 @@ contains
 
       call path%find_events(path%state%fields%plus(longest, increment%response%rate), events)
       call find_violations(path%model, path%state%status, events, path%state%fields, &
-                           increment%response%rate, max(rate_tolerance, path%system%tolerance), increment%violations)
+                           increment%response%rate, max(rate_tolerance, path%system%tolerance), path%system%tolerance, &
+                           increment%violations)
       first = min(minval(increment%violations%step), never)
       increment%step = min(first, longest)
       increment%reach = first*(1.0_wp + tie_tolerance(path)) + shortest_step(path)
