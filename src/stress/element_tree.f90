@@ -10,7 +10,7 @@ module mfv_element_tree
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: element_tree_type, new_element_tree
+   public :: element_tree_type, new_element_tree, last_not_above
 
    !> Most elements of a leaf; radii beyond which a group acts through its moments; the highest moment.
    integer, parameter :: leaf_size = 12
@@ -188,5 +188,22 @@ contains
       end do
       integrals = integrals + [-sums(1)/away, sums(2)/away**2, -sums(3)/away]
    end subroutine add_group
+
+   !> Index of the last of ascending values that is not above x; 0 for none.
+   pure integer function last_not_above(values, x) result(last)
+      real(wp), intent(in) :: values(:), x
+      integer :: beyond, middle
+
+      last = 0
+      beyond = size(values) + 1
+      do while (beyond - last > 1)
+         middle = (last + beyond)/2
+         if (values(middle) <= x) then
+            last = middle
+         else
+            beyond = middle
+         end if
+      end do
+   end function last_not_above
 
 end module mfv_element_tree

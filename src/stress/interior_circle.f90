@@ -23,10 +23,10 @@
 !> Points are relative to z = 1 (theta = 0), not to the centre, to avoid cancellation close to the contact; Phi' occurs only
 !> times |z|^2 - 1, which vanishes on the surface.
 module mfv_interior_circle
-   use mfv_element_tree, only: element_tree_type, new_element_tree
+   use mfv_element_tree, only: element_tree_type, last_not_above, new_element_tree
    use mfv_kinds, only: pi, wp
    use mfv_logarithms, only: log_ratio
-   use mfv_numerics, only: gauss_points
+   use mfv_quadrature, only: gauss_points
    implicit none
    private
    public :: circle_load_type, new_circle_load, longest_element
@@ -57,13 +57,14 @@ module mfv_interior_circle
    contains
       procedure :: stress
       procedure :: surface_stress
+      procedure :: traction
    end type circle_load_type
 
 contains
 
    !> `disk`: disk or hole. `kappa`: Kolosov's constant. `from`, `to`: ends of the elements, radians, at most `longest_element`
    !> apart; `first`, `last`: sigma_rr + i sigma_rtheta there, force/length^2; shapes (elements).
-   type(circle_load_type) function new_circle_load(disk, kappa, from, to, first, last) result(self)
+   pure type(circle_load_type) function new_circle_load(disk, kappa, from, to, first, last) result(self)
       logical, intent(in) :: disk
       real(wp), intent(in) :: kappa, from(:), to(:)
       complex(wp), intent(in) :: first(:), last(:)
@@ -94,7 +95,7 @@ contains
    end function new_circle_load
 
    !> The elements in groups. sigma_rr + i sigma_rtheta is linear in u, see above.
-   type(element_tree_type) function tree_of(elements) result(tree)
+   pure type(element_tree_type) function tree_of(elements) result(tree)
       type(element_type), intent(in) :: elements(:)
       complex(wp), dimension(most_points, size(elements)) :: place, sigma, weight
       complex(wp), parameter :: i = (0.0_wp, 1.0_wp)
@@ -226,6 +227,21 @@ contains
          stress = -2.0_wp/pi*sum + radial - 2.0_wp*real(self%mean, wp) + self%kappa*kelvin
       end if
    end function surface_stress
+
+   !> sigma_rr + i sigma_rtheta at an angle from theta = 0, radians; 0 outside all elements.
+   pure complex(wp) function traction(self, angle)
+      class(circle_load_type), intent(in) :: self
+      real(wp), intent(in) :: angle
+      integer :: j
+
+      traction = 0.0_wp
+      j = last_not_above(self%elements%from, angle)
+      if (j == 0) return
+      associate (e => self%elements(j))
+         if (angle > e%to .or. .not. e%half > 0.0_wp) return
+         traction = e%mean + e%tilt*(sin(angle - 0.5_wp*(e%from + e%to))/e%sine)
+      end associate
+   end function traction
 
    !> The real part of the integral of u/(s - z) ds over an element at an angle on the circle, from that of 1/(s - z).
    pure real(wp) function tilted_part(element, angle, growth) result(tilted)

@@ -6,10 +6,10 @@
 !> - z) dt. The integrals over an element are elementary; for elements that are short compared with their distance, series
 !> avoid cancellation; groups of distant elements act together (mfv_element_tree).
 module mfv_interior_half_plane
-   use mfv_element_tree, only: element_tree_type, new_element_tree
+   use mfv_element_tree, only: element_tree_type, last_not_above, new_element_tree
    use mfv_kinds, only: pi, wp
    use mfv_logarithms, only: log_ratio
-   use mfv_numerics, only: gauss_points
+   use mfv_quadrature, only: gauss_points
    implicit none
    private
    public :: half_plane_load_type, new_half_plane_load
@@ -29,13 +29,14 @@ module mfv_interior_half_plane
    contains
       procedure :: stress
       procedure :: surface_stress
+      procedure :: traction
    end type half_plane_load_type
 
 contains
 
    !> Elements from `from` to `to`, lengths (ascending, for speed), with tractions p + i tau linear from `first` to `last`,
    !> force/length^2; shapes (elements).
-   type(half_plane_load_type) function new_half_plane_load(from, to, first, last) result(self)
+   pure type(half_plane_load_type) function new_half_plane_load(from, to, first, last) result(self)
       real(wp), intent(in) :: from(:), to(:)
       complex(wp), intent(in) :: first(:), last(:)
       real(wp) :: point(most_points), weight(most_points)
@@ -103,6 +104,19 @@ contains
       end do
       surface_stress = 2.0_wp/pi*sum - pressure
    end function surface_stress
+
+   !> p + i tau at the surface point `x`, 0 outside all elements.
+   pure complex(wp) function traction(self, x)
+      class(half_plane_load_type), intent(in) :: self
+      real(wp), intent(in) :: x
+      integer :: j
+
+      traction = 0.0_wp
+      j = last_not_above(self%from, x)
+      if (j == 0) return
+      if (x > self%to(j) .or. .not. self%to(j) > self%from(j)) return
+      traction = self%first(j) + (self%last(j) - self%first(j))*((x - self%from(j))/(self%to(j) - self%from(j)))
+   end function traction
 
    !> Add the integral of tau/t over an element from `left` to `right`, and the pressure at 0 if it is there.
    pure subroutine add_surface_element(left, right, first, last, sum, pressure)
