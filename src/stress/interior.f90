@@ -45,6 +45,8 @@ module mfv_interior
       procedure :: stress
       procedure :: all_stresses
       procedure :: surface_stress
+      procedure :: surface_von_mises
+      procedure :: zones
       procedure :: remote_stress
       procedure :: half_width
       procedure :: surface
@@ -197,6 +199,41 @@ contains
          surface_stress = self%half_plane%surface_stress(arc/self%length) + self%bulk
       end if
    end function surface_stress
+
+   !> Von Mises stress at the surface, force/length^2, at an arc length from the origin of x: that of `stress` there, but quicker.
+   pure real(wp) function surface_von_mises(self, arc)
+      class(interior_type), intent(in) :: self
+      real(wp), intent(in) :: arc
+      complex(wp) :: traction
+      real(wp) :: along, values(4)
+
+      along = self%surface_stress(arc)
+      if (self%body%circular()) then
+         traction = self%circle%traction(arc/self%length)
+      else
+         traction = -conjg(self%half_plane%traction(arc/self%length))
+      end if
+      values([stress_xx, stress_yy, stress_xy]) = [along, real(traction, wp), aimag(traction)]
+      values(stress_zz) = self%out_of_plane*(along + real(traction, wp))
+      surface_von_mises = von_mises_stress(values)
+   end function surface_von_mises
+
+   !> Ends of the loaded parts of the surface, arc lengths from the origin of x, shape (2, parts).
+   pure function zones(self)
+      class(interior_type), intent(in) :: self
+      real(wp), allocatable :: zones(:, :)
+      logical :: begins(size(self%elements%from)), ends(size(self%elements%from))
+      integer :: n
+
+      n = size(begins)
+      begins(:1) = .true.
+      ends(n:) = .true.
+      begins(2:) = self%elements%from(2:) > self%elements%to(:n - 1)
+      ends(:n - 1) = begins(2:)
+      associate (left => pack(self%elements%from, begins), right => pack(self%elements%to, ends))
+         zones = self%length*transpose(reshape([left, right], [size(left), 2]))
+      end associate
+   end function zones
 
    !> Stresses as of `stress` far from the contact, force/length^2.
    pure function remote_stress(self) result(values)

@@ -302,6 +302,8 @@ def _fault_of_values(key: Key, values: Sequence[Any]) -> str:
         return "a value is missing between commas"
     if any(isinstance(value, float) and not math.isfinite(value) for value in values):
         return "must be finite"
+    if key.kind == "text" and any(isinstance(value, str) and not value.strip() for value in values):
+        return "must not be empty"
     words = key.kind.split()
     kinds: dict[str, Any] = {"text": str, "number": (int, float), "whole": int, "any": object}
     is_right = all(
