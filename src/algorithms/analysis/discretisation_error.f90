@@ -11,15 +11,16 @@ module mfv_discretisation_error
    use mfv_friction, only: friction_coefficient_type
    use mfv_kinds, only: pi, wp
    use mfv_motions, only: control_keep, motion_approach, motion_shift
-   use mfv_node_status, only: holds
+   use mfv_node_status, only: holds, in_contact
    use mfv_observables, only: observable_count, observable_place, observables_of
    use mfv_observer, only: observer_type, relay_type
+   use mfv_profile_sampling, only: negligible_pressure
+   use mfv_resolution, only: add_unresolved, all_quantities, find_unresolved, is_unresolved, undersampling, unresolved_type
    use mfv_scene, only: scene_type
    use mfv_simulation, only: history_none, new_simulation, simulation_type, states_steps
-   use mfv_slip_zones, only: contact_interval
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
-   use mfv_zone_edges, only: find_patches, largest_shear, patch_type
+   use mfv_zone_edges, only: find_patches, largest_shear, patch_type, zones_of
    implicit none
    private
    public :: estimate_error, coarser_scene, scene_on_mesh, fix_cycles, nearest_mesh, quantity_names, interval_allowances, &
@@ -55,18 +56,21 @@ contains
       integer, allocatable :: nodes(:)
       integer, parameter :: by_edges(4) = [quantity_half_width, quantity_stick_ratio, quantity_lower_tension, &
                                            quantity_upper_tension]
+      type(unresolved_type), allocatable :: unresolved(:)
       integer :: quantity
 
       estimate%nodes = simulation%contact%model%scene%mesh%nodes
       estimate%message = ''
+      estimate%doubt = ''
       allocate (estimate%coarser_nodes(0))
       call choose_coarser_meshes(simulation, nodes, estimate)
-      if (estimate%message == '') call solve_coarser_meshes(simulation, nodes, values, allowances, estimate, observer)
+      if (estimate%message == '') call find_unresolved(simulation, unresolved)
+      if (estimate%message == '') call solve_coarser_meshes(simulation, nodes, values, allowances, unresolved, estimate, observer)
       if (estimate%message == '') then
          estimate%coarser_nodes = nodes(2:)
          do quantity = 1, quantity_count
             if (any(ieee_is_nan(values(quantity, :)))) cycle
-            if (is_resolved(simulation, quantity)) then
+            if (.not. is_unresolved(unresolved, trim(quantity_names(quantity)))) then
                if (.not. is_there(simulation%contact%model, quantity, values(quantity, :))) cycle
                estimate%bar(quantity) = new_error_bar(nodes, values(quantity, :), allowances(quantity, :), &
                                                       any(quantity == by_edges), &
@@ -108,21 +112,6 @@ contains
          peak_is_at_corner = model%scene%modulus()*jump/pi*log(2.0_wp) > least_growth*pressure(peak)
       end associate
    end function peak_is_at_corner
-
-   !> Whether the slip zones that a quantity depends on have enough nodes.
-   pure logical function is_resolved(simulation, quantity)
-      type(simulation_type), intent(in) :: simulation
-      integer, intent(in) :: quantity
-
-      is_resolved = .true.
-      select case (quantity)
-      case (quantity_dissipation, quantity_cycle_dissipation, quantity_loss_factor)
-         is_resolved = .not. simulation%slip%is_coarse()
-      case (quantity_stick_ratio, quantity_peak_shear, quantity_lower_tension, quantity_upper_tension)
-         is_resolved = .not. simulation%slip%is_coarse_now(contact_interval(simulation%contact%model, &
-                                                                            simulation%contact%state))
-      end select
-   end function is_resolved
 
    !> Whether a quantity is modelled and is not zero on all meshes.
    pure logical function is_there(model, quantity, values)
@@ -205,11 +194,12 @@ contains
    end function fits
 
    !> Solve the scene on the coarser meshes. `values`, `allowances`: every quantity on every mesh, shape (quantity_count,
-   !> size(nodes)).
-   subroutine solve_coarser_meshes(simulation, nodes, values, allowances, estimate, observer)
+   !> size(nodes)). `unresolved`: nothing can be estimated from a mesh that misses contact patches, or points of a profile.
+   subroutine solve_coarser_meshes(simulation, nodes, values, allowances, unresolved, estimate, observer)
       type(simulation_type), intent(in) :: simulation
       integer, intent(in) :: nodes(:)
       real(wp), allocatable, intent(out) :: values(:, :), allowances(:, :)
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
       type(error_estimate_type), intent(inout) :: estimate
       class(observer_type), intent(inout), target, optional :: observer
       type(relay_type) :: watch
@@ -232,8 +222,33 @@ contains
          end if
          values(:, i) = quantities_of(coarse)
          allowances(:, i) = interval_allowances(coarse)
+         if (estimate%doubt == '') estimate%doubt = difference_of_meshes(simulation, coarse)
       end do
+      if (estimate%doubt == '') return
+      call add_unresolved(unresolved, all_quantities(simulation), estimate%doubt, 'use more nodes')
+      estimate%doubt = unresolved(size(unresolved))%text
    end subroutine solve_coarser_meshes
+
+   !> Why a coarser mesh says nothing about the discretisation error of a simulation; empty if it does.
+   function difference_of_meshes(simulation, coarse) result(why)
+      type(simulation_type), intent(in) :: simulation, coarse
+      character(:), allocatable :: why
+      real(wp) :: part(2)
+      integer :: patches(2), points
+
+      why = ''
+      patches(1) = size(zones_of(in_contact(simulation%contact%state%status)))
+      patches(2) = size(zones_of(in_contact(coarse%contact%state%status)))
+      call undersampling(coarse, .false., part(1), points)
+      call undersampling(coarse, .true., part(2), points)
+      if (patches(1) /= patches(2)) then
+         why = 'the error cannot be estimated: there are '//to_text(patches(1))//' contact patches, but '//to_text(patches(2))// &
+               ' on a mesh of '//to_text(coarse%contact%model%scene%mesh%nodes)//' nodes'
+      else if (any(part > negligible_pressure)) then
+         why = 'the error cannot be estimated: a mesh of '//to_text(coarse%contact%model%scene%mesh%nodes)// &
+               ' nodes is coarser than the profile'
+      end if
+   end function difference_of_meshes
 
    !> The scene of a simulation on `nodes` intervals, with as many cycles as the simulation, steady or not.
    type(scene_type) function coarser_scene(simulation, nodes) result(scene)

@@ -222,14 +222,21 @@ contains
    end function secant_stiffness
 
    !> Loss factor: area of the loop of tangential force and shift over 2 pi times the energy force_amplitude*shift_amplitude/2 of a
-   !> spring of the secant stiffness. The area is the dissipation unless another load changes. NaN without a secant stiffness.
+   !> spring of the secant stiffness. The area is the dissipation unless another load changes. NaN without a secant stiffness, and
+   !> for a loop that is open, which has no area: the work between its ends depends on how it is closed.
    elemental real(wp) function loss_factor(self)
       class(cycle_type), intent(in) :: self
+      !> Part of the area by which an open loop may be uncertain.
+      real(wp), parameter :: negligible = 0.01_wp
+      real(wp) :: open_work
 
       loss_factor = ieee_value(1.0_wp, ieee_quiet_nan)
       if (.not. self%is_sheared()) return
       loss_factor = self%loop_area(motion_shift)
       if (self%only_sheared()) loss_factor = self%dissipation()
+      open_work = self%force_amplitude()*abs(self%drift(motion_shift)) + &
+                  self%shift_amplitude()*abs(self%return%force(motion_shift) - self%start%force(motion_shift))
+      if (open_work > negligible*abs(loss_factor)) loss_factor = ieee_value(1.0_wp, ieee_quiet_nan)
       loss_factor = loss_factor/(pi*self%force_amplitude()*self%shift_amplitude())
    end function loss_factor
 

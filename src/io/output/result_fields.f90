@@ -742,7 +742,7 @@ contains
       if (.not. bar%known) return
       call list%add(name, bar%value, unit, meaning)
       call list%add(name//'_error', bar%error, unit, 'estimated discretisation error: '//meaning//'; infinite if '// &
-                    'there is no limit, NaN if slip zones have too few nodes to resolve it')
+                    'there is no limit, NaN if it is not resolved, as a warning says')
       call list%add(name//'_order', bar%order, '1', 'observed order of convergence, from 1 to 2 (negative: no limit; NaN: not '// &
                     'resolved): '//meaning)
       call list%add(name//'_companions', bar%coarser_values, along_companions, unit, 'on the coarser meshes: '//meaning)  ! wording: ok
