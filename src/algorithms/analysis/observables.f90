@@ -87,7 +87,7 @@ module mfv_observables
                                 row_type('largest_shear', 'force/length^2', 'largest size of the shear traction'//over), &
                                 row_type('largest_shear_x', 'length', 'where it is: x'), &
                                 row_type('largest_shear_row', '1', row_meaning), &
-              row_type('largest_slip_range', 'length', 'largest range of the slip of a node at turning points in contact'//over), &
+               row_type('largest_slip_range', 'length', 'largest range of the slip of a node at turning points in contact'//over), &
                                 row_type('largest_slip_range_x', 'length', 'where it is: x'), &
                                 row_type('smallest_stick_ratio', '1', 'smallest stick ratio, as stick_ratio'//over), &
                                 row_type('smallest_stick_ratio_row', '1', row_meaning), &
@@ -126,7 +126,7 @@ contains
 
       values = ieee_value(1.0_wp, ieee_quiet_nan)
       call add_present(simulation, values)
-      call add_extremes(simulation, .not. present(without_von_mises), values)
+      call add_extremes(simulation,.not. present(without_von_mises), values)
       if (simulation%marks(mark_loading)%step == 0) return
       state = simulation%padded(simulation%marks(mark_loading))
       call find_zone_edges(simulation%contact%model, state, loading)

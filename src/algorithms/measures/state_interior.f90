@@ -10,7 +10,7 @@ module mfv_state_interior
    use mfv_zone_edges, only: find_patches, patch_type
    implicit none
    private
-   public :: state_interior, find_edges_at_nodes, find_largest_tension, find_largest_von_mises
+   public :: state_interior, find_edges_at_nodes, find_largest_tension, find_largest_von_mises, surface_stress_at
 
 contains
 
@@ -55,7 +55,28 @@ contains
       if (available) largest = largest_tension(interior)
    end subroutine find_largest_tension
 
-   !> The same for the von Mises stress in a body.
+   !> Stress along the surface of a body at x in a state, force/length^2; NaN without stresses, and beyond a circle.
+   real(wp) function surface_stress_at(model, state, upper, x) result(stress)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      logical, intent(in) :: upper
+      real(wp), intent(in) :: x
+      type(interior_type) :: interior
+      logical :: available
+
+      stress = ieee_value(1.0_wp, ieee_quiet_nan)
+      call state_interior(model, state, upper, interior, available)
+      if (.not. available) return
+      associate (body => interior%body)
+         if (.not. body%circular()) then
+            stress = interior%surface_stress(x)
+         else if (abs(x) <= body%radius) then
+            stress = interior%surface_stress(body%radius*asin(x/body%radius))
+         end if
+      end associate
+   end function surface_stress_at
+
+   !> The largest von Mises stress in a body in a state; `available`: see state_interior.
    subroutine find_largest_von_mises(model, state, upper, largest, available)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state

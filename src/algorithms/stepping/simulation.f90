@@ -23,7 +23,7 @@ module mfv_simulation
    use mfv_observer, only: observer_type
    use mfv_scene
    use mfv_slip_zones, only: segment_start_type, slip_record_type
-   use mfv_state_interior, only: find_largest_tension, find_largest_von_mises
+   use mfv_state_interior, only: find_largest_tension, find_largest_von_mises, surface_stress_at
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR
    use mfv_stress_search, only: largest_type
    use mfv_straight, only: apply_directly
@@ -46,8 +46,8 @@ module mfv_simulation
    !> cycle (with `reversal` 0 before the first: the start of the step), and its start.
    integer, parameter :: mark_loading = 1, mark_reversal = 2, mark_return = 3, mark_cycle_start = 4
    !> The reversal of the incomplete cycle; and, with the number of a stress or body added, the states of the present stretch whose
-   !> stresses are estimated to be the largest (candidate_tension and so on); those of the last complete cycle, and of the whole load
-   !> history, for the von Mises stress of a body. And the number of marks.
+   !> stresses are estimated to be the largest (candidate_tension and so on); those of the last complete cycle, and of the whole
+   !> load history, for the von Mises stress of a body. And the number of marks.
    integer, parameter :: mark_pending = 5, mark_candidate = 5, mark_last_cycle = 9, mark_yield = 11, mark_count = 13
 
    !> The state at the end of a step, or of one reversal of a step with cycles.
@@ -125,6 +125,8 @@ module mfv_simulation
       integer :: keep_history = history_events
       !> See states_reversals and so on.
       integer :: keep_states = states_reversals
+      !> x at which history records have the stress along the surface, with the largest tension; unallocated: none.
+      real(wp), allocatable :: stress_at
       !> Checksums of the load history up to the end of every step, if history or states are kept; the first `load_summary%steps`
       !> are in use.
       integer(int64), allocatable, private :: history_checksums(:)
@@ -620,6 +622,7 @@ contains
          i = turn
          if (extremes%stretch == over_rows) i = step%row + turn - 1
          if (extremes%stretch == over_steps) i = self%steps_done + 1
+         if (allocated(self%stress_at) .and. self%keep_history /= history_none) call record_surface(contact, self%stress_at)
          call extremes%add_state(contact%model, contact%state, self%slip_range, i, step%friction, is_larger)
          do i = 1, candidate_count
             if (is_larger(i)) call set_mark(self, mark_candidate + i, self%leg%number)
@@ -633,6 +636,25 @@ contains
          end do
       end associate
    end subroutine note_extremes
+
+   !> Add the largest tensions, and the stresses along the surface at `x`, to the last history record.
+   subroutine record_surface(contact, x)
+      type(contact_path_type), intent(inout) :: contact
+      real(wp), intent(in) :: x
+      type(largest_type) :: largest
+      logical :: available
+      integer :: side
+
+      associate (record => contact%history%record(contact%history%records))
+         do side = 1, size(record%tension)
+            record%surface_stress(side) = surface_stress_at(contact%model, contact%state, side == 2, x)
+            call find_largest_tension(contact%model, contact%state, side == 2, largest, available)
+            if (.not. available) cycle
+            record%tension(side) = largest%value
+            record%tension_x(side) = largest%x
+         end do
+      end associate
+   end subroutine record_surface
 
    !> The extremes of a complete cycle. The search for the largest tensions is skipped if they repeat those of the cycle before.
    subroutine complete_extremes(self, cycle)

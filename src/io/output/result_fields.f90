@@ -12,6 +12,7 @@ module mfv_result_fields
    use mfv_cycle, only: cycle_type
    use mfv_discretisation_error, only: quantity_names
    use mfv_error_bar
+   use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
    use mfv_load_extremes, only: candidate_tension, extreme_type
    use mfv_material, only: plane_names
@@ -819,9 +820,12 @@ contains
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
       integer, parameter :: along = along_records
+      character(*), parameter :: bodies(2) = ['lower', 'upper']
       real(wp), dimension(simulation%contact%history%records, motion_count) :: force, motion
+      logical :: has_stresses(2)
       integer :: i
 
+      has_stresses = [has_interior(simulation%contact%model%scene%lower), has_interior(simulation%contact%model%scene%upper)]
       associate (r => simulation%contact%history%record(:simulation%contact%history%records))
          call list%add('record', [(i, i=0, size(r) - 1)], along, 'number of the record')
          do i = 1, motion_count
@@ -842,6 +846,16 @@ contains
          call list%add('event_count', r%event_count, along, 'number of nodes of the event')
          call list%add('step', r%step, along, 'number of the step, 0 before the first')
          call list%add('linear_solves', r%linear_solves, along, linear_solves_meaning)
+         if (allocated(simulation%stress_at)) then
+            do i = 1, size(bodies)
+               if (.not. has_stresses(i)) cycle
+               call list%add(bodies(i)//'_tension', r%tension(i), along, 'force/length^2', 'largest tension along the surface '// &
+                             'of the '//bodies(i)//' body; NaN at events')
+               call list%add(bodies(i)//'_tension_x', r%tension_x(i), along, 'length', 'where it is: x')
+               call list%add(bodies(i)//'_surface_stress', r%surface_stress(i), along, 'force/length^2', 'stress along the '// &
+                             'surface of the '//bodies(i)//' body at x = stress_at; NaN at events')
+            end do
+         end if
       end associate
    end subroutine add_history
 
