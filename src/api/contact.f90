@@ -183,6 +183,7 @@ contains
          call set_error(error, self%simulation%outcome, self%simulation%message)
          return
       end if
+      if (allocated(self%case%stress_at)) self%simulation%stress_at = self%case%stress_at
       call find_case_checksum(self%case, self%simulation%contact%model, self%scene)
       self%is_made = .true.
    end subroutine begin

@@ -393,5 +393,6 @@ CASE: dict[tuple[str, str], Row] = {
     ("output", "states"): choice("output", "cylinder", "'reversals'", "reversals steps none last_cycle"),
     ("output", "error_estimate"): logical("output", "cylinder", ".false."),
     ("output", "sensitivity"): logical("output", "cylinder", ".false."),
+    ("output", "stress_at"): real("output", "cylinder", "1e-3", "length"),
     ("output", "checkpoint_minutes"): real("output", "cylinder", "10", "minutes", lower=0.0, upper=1e6),
 }

@@ -346,7 +346,7 @@ contains
       real(wp) :: all_values(observable_count)
       integer :: quantity
 
-      call observables_of(simulation, all_values)
+      call observables_of(simulation, all_values, without_von_mises=.true.)
       values = [(all_values(observable_place(quantity_names(quantity))), quantity=1, quantity_count)]
       values(quantity_half_width) = 0.5_wp*all_values(observable_place('contact_length'))
    end function quantities_of

@@ -4,16 +4,14 @@ module mfv_validity
    use mfv_body, only: body_type, shape_half_plane, shape_matrix
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
-   use mfv_interior, only: interior_type
    use mfv_kinds, only: pi, wp
-   use mfv_motions, only: motion_approach, motion_shift, motion_rotation, bulk_motions, &
-                          control_displacement
+   use mfv_motions, only: motion_approach, motion_shift, motion_rotation, control_displacement
    use mfv_node_status, only: in_contact
    use mfv_resolution, only: find_unresolved, poorest_patch, unresolved_type
    use mfv_scene, only: scene_type
-   use mfv_simulation, only: simulation_type, states_none, states_steps
-   use mfv_state_interior, only: state_interior
-   use mfv_stress_search, only: largest_type, largest_von_mises
+   use mfv_simulation, only: mark_yield, simulation_type
+   use mfv_state_interior, only: find_largest_von_mises
+   use mfv_stress_search, only: largest_type
    use mfv_strings, only: add_text, string_type, to_text
    use mfv_surface_warnings, only: warn_of_surface
    use mfv_zone_edges, only: zone_type
@@ -263,72 +261,48 @@ contains
                        'columns must have all normal components first, then all tangential ones')
    end subroutine check_order
 
-   !> The last state and, at the ends of steps, those of largest normal force, and of largest tangential force and bulk stress in
-   !> either direction.
+   !> The state of the load history, at the ends of its load segments, with the largest von Mises stress.
    subroutine check_yield(simulation, upper, body, warnings)
       type(simulation_type), intent(in) :: simulation
       logical, intent(in) :: upper
       type(body_type), intent(in) :: body
       type(string_type), allocatable, intent(inout) :: warnings(:)
-      type(largest_type) :: largest, other
-      character(:), allocatable :: where_it_is
-      integer :: candidates(5), i, n, bulk
-
-      if (.not. body%yield_strength > 0.0_wp) return
-      largest = largest_below(simulation, upper, simulation%contact%state)
-      where_it_is = 'in the last state'
-      n = simulation%snapshot_count
-      candidates = 0
-      bulk = bulk_motions(merge(2, 1, upper))
-      if (n > 1) candidates = [maxloc([(simulation%snapshots(i)%state%fields%force(motion_approach), i=1, n)]), &
-                               maxloc([(simulation%snapshots(i)%state%fields%force(motion_shift), i=1, n)]), &
-                               minloc([(simulation%snapshots(i)%state%fields%force(motion_shift), i=1, n)]), &
-                               maxloc([(simulation%snapshots(i)%state%fields%motion(bulk), i=1, n)]), &
-                               minloc([(simulation%snapshots(i)%state%fields%motion(bulk), i=1, n)])]
-      do i = 1, size(candidates)
-         if (.not. ieee_is_finite(largest%value)) exit
-         if (candidates(i) == 0 .or. candidates(i) == n) cycle
-         other = largest_below(simulation, upper, simulation%padded(simulation%snapshots(candidates(i))))
-         if (ieee_is_finite(other%value)) then
-            if (.not. other%value > largest%value) cycle
-         end if
-         largest = other
-         where_it_is = 'in steps/'//to_text(candidates(i))
-      end do
-      if (.not. ieee_is_finite(largest%value)) then
-         call add_text(warnings, 'the '//merge('upper', 'lower', upper)//' body yields under any load: its stresses are '// &
-                       'unbounded at a sharp corner; they are bounded with rounded edges')
-      else if (largest%value > body%yield_strength) then
-         call add_text(warnings, 'the largest von Mises stress of the '//merge('upper', 'lower', upper)//' body, '// &
-                       to_text(largest%value, 4)//' '//where_it_is//', exceeds its yield_strength '// &
-                       to_text(body%yield_strength)//': stresses and tractions are not valid beyond yield')
-      else if (has_history(simulation) .and. any(simulation%keep_states == [states_steps, states_none])) then
-         call add_text(warnings, 'yield of the '//merge('upper', 'lower', upper)//' body is not checked at the turning points '// &
-                       "of the load history, which are not saved: set states='reversals' in &output")
-      end if
-   end subroutine check_yield
-
-   !> Whether a step is a load history with turning points of its own, or a row of one.
-   pure logical function has_history(simulation)
-      type(simulation_type), intent(in) :: simulation
-      integer :: i
-
-      associate (steps => simulation%contact%model%scene%steps)
-         has_history = any(steps%is_passed) .or. any([(allocated(steps(i)%path), i=1, size(steps))])
-      end associate
-   end function has_history
-
-   !> Largest von Mises stress of a body in a state; zero without an interior.
-   type(largest_type) function largest_below(simulation, upper, state) result(largest)
-      type(simulation_type), intent(in) :: simulation
-      logical, intent(in) :: upper
-      type(contact_state_type), intent(in) :: state
-      type(interior_type) :: interior
+      type(largest_type) :: largest
       logical :: available
 
-      ! The value is flat at its maximum: few elements suffice.
-      call state_interior(simulation%contact%model, state, upper, interior, available, fewest_elements=60)
-      if (available) largest = largest_von_mises(interior)
-   end function largest_below
+      if (.not. body%yield_strength > 0.0_wp) return
+      associate (mark => simulation%marks(mark_yield + merge(2, 1, upper)))
+         if (mark%step == 0) return
+         call find_largest_von_mises(simulation%contact%model, simulation%padded(mark), upper, largest, available)
+         if (.not. available) return
+         if (.not. ieee_is_finite(largest%value)) then
+            call add_text(warnings, 'the '//merge('upper', 'lower', upper)//' body yields under any load: its stresses are '// &
+                          'unbounded at a sharp corner; they are bounded with rounded edges')
+         else if (largest%value > body%yield_strength) then
+            call add_text(warnings, 'the largest von Mises stress of the '//merge('upper', 'lower', upper)//' body, '// &
+                          to_text(largest%value, 4)//' '//trim(place_in_history(simulation, mark%step, mark%reversal))// &
+                          ', exceeds its yield_strength '//to_text(body%yield_strength)// &
+                          ': stresses and tractions are not valid beyond yield')
+         end if
+      end associate
+   end subroutine check_yield
+
+   !> The end of a load segment in words; padded with blanks.
+   pure function place_in_history(simulation, step, segment) result(text)
+      type(simulation_type), intent(in) :: simulation
+      integer, intent(in) :: step, segment
+      character(len=80) :: text
+
+      text = 'at the end of step '//to_text(step)
+      if (segment > 1) text = 'at turning point '//to_text(segment)//' of step '//to_text(step)
+      associate (steps => simulation%contact%model%scene%steps)
+         if (step > size(steps)) return
+         if (steps(step)%row > 0) then
+            text = 'in row '//to_text(steps(step)%row + mod(segment - 1, steps(step)%turns()))//' of &history'
+         else if (steps(step)%cycles > 0) then
+            text = 'at turning point '//to_text(segment)//' of step '//to_text(step)
+         end if
+      end associate
+   end function place_in_history
 
 end module mfv_validity

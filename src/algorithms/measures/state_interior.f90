@@ -6,10 +6,11 @@ module mfv_state_interior
    use mfv_interior, only: has_interior, interior_type
    use mfv_kinds, only: wp
    use mfv_motions, only: bulk_motions
+   use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
    use mfv_zone_edges, only: find_patches, patch_type
    implicit none
    private
-   public :: state_interior, find_edges_at_nodes
+   public :: state_interior, find_edges_at_nodes, find_largest_tension, find_largest_von_mises, surface_stress_at
 
 contains
 
@@ -32,6 +33,62 @@ contains
                                 stick_edge, state%fields%motion(bulk_motions(merge(2, 1, upper))), interior, &
                                 available, fewest_elements)
    end subroutine state_interior
+
+   !> The largest tension along the surface of a body in a state; `available`: see state_interior.
+   subroutine find_largest_tension(model, state, upper, largest, available)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      logical, intent(in) :: upper
+      type(largest_type), intent(out) :: largest
+      logical, intent(out) :: available
+      type(interior_type) :: interior
+
+      ! Pressure only compresses a straight surface.
+      available = model%scene%can_have_bulk_stress(upper) .and. .not. any(abs(state%fields%shear) > 0.0_wp)
+      if (available) then
+         largest%value = max(state%fields%motion(bulk_motions(merge(2, 1, upper))), 0.0_wp)
+         largest%x = ieee_value(1.0_wp, ieee_quiet_nan)
+         largest%y = largest%x
+         return
+      end if
+      call state_interior(model, state, upper, interior, available)
+      if (available) largest = largest_tension(interior)
+   end subroutine find_largest_tension
+
+   !> Stress along the surface of a body at x in a state, force/length^2; NaN without stresses, and beyond a circle.
+   real(wp) function surface_stress_at(model, state, upper, x) result(stress)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      logical, intent(in) :: upper
+      real(wp), intent(in) :: x
+      type(interior_type) :: interior
+      logical :: available
+
+      stress = ieee_value(1.0_wp, ieee_quiet_nan)
+      call state_interior(model, state, upper, interior, available)
+      if (.not. available) return
+      associate (body => interior%body)
+         if (.not. body%circular()) then
+            stress = interior%surface_stress(x)
+         else if (abs(x) <= body%radius) then
+            stress = interior%surface_stress(body%radius*asin(x/body%radius))
+         end if
+      end associate
+   end function surface_stress_at
+
+   !> The largest von Mises stress in a body in a state; `available`: see state_interior.
+   subroutine find_largest_von_mises(model, state, upper, largest, available)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      logical, intent(in) :: upper
+      type(largest_type), intent(out) :: largest
+      logical, intent(out) :: available
+      type(interior_type) :: interior
+
+      ! The value is flat at its maximum: few elements suffice.
+      call state_interior(model, state, upper, interior, available, fewest_elements=60)
+      if (available) largest = largest_von_mises(interior)
+   end subroutine find_largest_von_mises
 
    !> Edges of contact and stick zones, arc lengths from the origin of x, at the first and last node of each zone; NaN
    !> elsewhere; shape (nodes). A zone of one node has the width of its interval. Stick zones only with a sharp friction

@@ -217,14 +217,17 @@ contains
 
    !> Largest size of the shear traction in a patch, force/length^2: at its nodes, and at the edges of stick zones between nodes,
    !> beyond which it is mu p. At nodes alone it would be too small by the root of the interval (Mindlin 1949: the remaining
-   !> friction inside the edge).
-   real(wp) function largest_shear(model, state, patch) result(largest)
+   !> friction inside the edge). `arc`: where it is.
+   real(wp) function largest_shear(model, state, patch, arc) result(largest)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       type(patch_type), intent(in) :: patch
+      real(wp), intent(out), optional :: arc
       integer :: i
 
-      largest = maxval(abs(state%fields%shear(patch%first:patch%last)))
+      i = patch%first - 1 + maxloc(abs(state%fields%shear(patch%first:patch%last)), dim=1)
+      largest = abs(state%fields%shear(i))
+      if (present(arc)) arc = model%arc(i)
       if (.not. model%scene%friction%is_coulomb()) return
       do i = 1, size(patch%stick)
          call compare(patch%stick(i)%left, patch%stick(i)%first, -1)
@@ -237,14 +240,16 @@ contains
       subroutine compare(edge, outermost, side)
          real(wp), intent(in) :: edge
          integer, intent(in) :: outermost, side
-         real(wp) :: part
+         real(wp) :: part, limit
 
          associate (next => outermost + side, pressure => state%fields%pressure)
             if (next < patch%first .or. next > patch%last) return
             if (.not. slips(state%status(next))) return
             part = min(max((edge - model%arc(outermost))/(model%arc(next) - model%arc(outermost)), 0.0_wp), 1.0_wp)
-            largest = max(largest, model%kinetic_friction(next)*(pressure(outermost) + &
-                                                                 part*(pressure(next) - pressure(outermost))))
+            limit = model%kinetic_friction(next)*(pressure(outermost) + part*(pressure(next) - pressure(outermost)))
+            if (.not. limit > largest) return
+            largest = limit
+            if (present(arc)) arc = edge
          end associate
       end subroutine compare
    end function largest_shear

@@ -13,6 +13,8 @@ module mfv_simulation
    use mfv_conventional, only: apply_conventionally
    use mfv_error_bar, only: error_estimate_type
    use mfv_kinds, only: wp
+   use mfv_load_extremes, only: candidate_count, candidate_tension, candidate_von_mises, load_extremes_type, over_cycle, &
+                                over_rows, over_steps, slip_range_type
    use mfv_leap, only: apply_by_large_increments
    use mfv_load_way, only: load_summary_type
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_wear, control_keep, &
@@ -21,7 +23,9 @@ module mfv_simulation
    use mfv_observer, only: observer_type
    use mfv_scene
    use mfv_slip_zones, only: segment_start_type, slip_record_type
+   use mfv_state_interior, only: find_largest_tension, find_largest_von_mises, surface_stress_at
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR
+   use mfv_stress_search, only: largest_type
    use mfv_straight, only: apply_directly
    use mfv_wear_block, only: find_wear_block, work_of_wear
    use mfv_strings, only: to_text
@@ -30,7 +34,7 @@ module mfv_simulation
    public :: simulation_type, position_type, restart_type, new_simulation, snapshot_type, sensitivity_type, history_events, &
              history_steps, history_none
    public :: states_reversals, states_steps, states_none, states_last_cycle
-   public :: mark_loading, mark_reversal, mark_return, mark_cycle_start, mark_count
+   public :: mark_loading, mark_reversal, mark_return, mark_cycle_start, mark_yield, mark_count
 
    !> Records of the load history, in the order of the key &output history: one for every event, one for every step end, none.
    integer, parameter :: history_events = 1, history_steps = 2, history_none = 3
@@ -41,8 +45,10 @@ module mfv_simulation
    !> States stored for the last step with cycles: the start of the step, the reversal of its last complete cycle, the end of that
    !> cycle (with `reversal` 0 before the first: the start of the step), and its start.
    integer, parameter :: mark_loading = 1, mark_reversal = 2, mark_return = 3, mark_cycle_start = 4
-   !> The reversal of the incomplete cycle; and the number of marks.
-   integer, parameter :: mark_pending = 5, mark_count = 5
+   !> The reversal of the incomplete cycle; and, with the number of a stress or body added, the states of the present stretch whose
+   !> stresses are estimated to be the largest (candidate_tension and so on); those of the last complete cycle, and of the whole
+   !> load history, for the von Mises stress of a body. And the number of marks.
+   integer, parameter :: mark_pending = 5, mark_candidate = 5, mark_last_cycle = 9, mark_yield = 11, mark_count = 13
 
    !> The state at the end of a step, or of one reversal of a step with cycles.
    type :: snapshot_type
@@ -68,6 +74,11 @@ module mfv_simulation
       integer :: failed_scene_step = 0, scene_steps_done = 0
       !> Slip zones of all segments so far.
       type(slip_record_type) :: slip
+      !> Extremes and slip of the present stretch: since the start of a cycle, the first row of &history, or the start.
+      type(load_extremes_type) :: extremes
+      type(slip_range_type) :: slip_range
+      !> Estimates of the largest von Mises stress of both bodies at mark_yield, force/length^2.
+      real(wp) :: yield_estimate(2) = -1.0_wp
       !> Summary of the steps taken, the last one possibly incomplete.
       type(load_summary_type) :: load_summary
       !> The present controls and loads.
@@ -114,6 +125,8 @@ module mfv_simulation
       integer :: keep_history = history_events
       !> See states_reversals and so on.
       integer :: keep_states = states_reversals
+      !> x at which history records have the stress along the surface, with the largest tension; unallocated: none.
+      real(wp), allocatable :: stress_at
       !> Checksums of the load history up to the end of every step, if history or states are kept; the first `load_summary%steps`
       !> are in use.
       integer(int64), allocatable, private :: history_checksums(:)
@@ -136,6 +149,9 @@ module mfv_simulation
       procedure :: history_checksum
       procedure :: passed_through
       procedure :: padded
+      procedure :: stretch
+      procedure :: ends_with_cycle
+      procedure :: find_extremes
    end type simulation_type
 
 contains
@@ -231,6 +247,7 @@ contains
          call end_step_early(self, step, error)
          return
       end if
+      call note_extremes(self, step)
       associate (i => self%leg%number)
          if (step%cycles > 0) call complete_leg(self, i, step%turns(), self%leg%cycle)
          if (wears(self, step)) call apply_wear(self, step, before, segments, error)
@@ -531,7 +548,7 @@ contains
       class(simulation_type), intent(inout) :: self
       integer :: i
 
-      do i = 1, mark_count
+      do i = 1, mark_pending
          self%marks(i)%step = 0
       end do
       self%leg%cycle = cycle_type()
@@ -584,8 +601,148 @@ contains
       call set_mark(self, mark_return, leg)
       if (cycle%number == 1) cycle%first_dissipation = cycle%dissipation()
       if (cycle%number == 1) cycle%first_slip = cycle%slip()
+      call complete_extremes(self, cycle)
       call append_cycle(self%cycles, self%cycle_count, cycle, self%keep_history == history_none)
    end subroutine complete_leg
+
+   !> Note what the state at the end of the present segment adds to the extremes of its stretch.
+   subroutine note_extremes(self, step)
+      class(simulation_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      integer :: i, turn
+      logical :: is_larger(candidate_count)
+
+      turn = 1 + mod(self%leg%number - 1, step%turns())
+      if (merge(turn, 0, step%cycles > 0) == 1 .or. (step%row == 1 .and. self%leg%number == 1)) then
+         self%extremes = load_extremes_type(stretch=over_cycle, step=self%steps_done + 1)
+         if (step%row > 0) self%extremes%stretch = over_rows
+         self%slip_range = slip_range_type()
+      end if
+      associate (extremes => self%extremes, contact => self%contact)
+         i = turn
+         if (extremes%stretch == over_rows) i = step%row + turn - 1
+         if (extremes%stretch == over_steps) i = self%steps_done + 1
+         if (allocated(self%stress_at) .and. self%keep_history /= history_none) call record_surface(contact, self%stress_at)
+         call extremes%add_state(contact%model, contact%state, self%slip_range, i, step%friction, is_larger)
+         do i = 1, candidate_count
+            if (is_larger(i)) call set_mark(self, mark_candidate + i, self%leg%number)
+         end do
+         do i = 1, size(candidate_von_mises)
+            associate (candidate => candidate_von_mises(i))
+               if (.not. is_larger(candidate) .or. .not. extremes%estimate(candidate) > self%yield_estimate(i)) cycle
+               self%yield_estimate(i) = extremes%estimate(candidate)
+               self%marks(mark_yield + i) = self%marks(mark_candidate + candidate)
+            end associate
+         end do
+      end associate
+   end subroutine note_extremes
+
+   !> Add the largest tensions, and the stresses along the surface at `x`, to the last history record.
+   subroutine record_surface(contact, x)
+      type(contact_path_type), intent(inout) :: contact
+      real(wp), intent(in) :: x
+      type(largest_type) :: largest
+      logical :: available
+      integer :: side
+
+      associate (record => contact%history%record(contact%history%records))
+         do side = 1, size(record%tension)
+            record%surface_stress(side) = surface_stress_at(contact%model, contact%state, side == 2, x)
+            call find_largest_tension(contact%model, contact%state, side == 2, largest, available)
+            if (.not. available) cycle
+            record%tension(side) = largest%value
+            record%tension_x(side) = largest%x
+         end do
+      end associate
+   end subroutine record_surface
+
+   !> The extremes of a complete cycle. The search for the largest tensions is skipped if they repeat those of the cycle before.
+   subroutine complete_extremes(self, cycle)
+      class(simulation_type), intent(inout) :: self
+      type(cycle_type), intent(inout) :: cycle
+      integer :: i, candidate
+
+      cycle%extremes = self%extremes
+      do i = 1, size(candidate_tension)
+         candidate = candidate_tension(i)
+         if (cycle%number > 1) then
+            associate (before => self%cycles(self%cycle_count)%extremes)
+               cycle%extremes%searched(candidate) = before%searched(candidate)
+               if (self%extremes%is_repeated(before, candidate)) cycle
+            end associate
+         end if
+         call search(self, mark_candidate, candidate, cycle%extremes)
+      end do
+      do i = 1, size(candidate_von_mises)
+         self%marks(mark_last_cycle + i) = self%marks(mark_candidate + candidate_von_mises(i))
+      end do
+   end subroutine complete_extremes
+
+   !> Search for a largest stress in the state of its mark; none where no state has it.
+   subroutine search(self, mark, candidate, extremes)
+      class(simulation_type), intent(in) :: self
+      integer, intent(in) :: mark, candidate
+      type(load_extremes_type), intent(inout) :: extremes
+      type(contact_state_type) :: state
+      type(largest_type) :: largest
+      logical :: available
+
+      associate (found => extremes%searched(candidate))
+         found%row = 0
+         if (extremes%row(candidate) == 0) return
+         state = self%padded(self%marks(mark + candidate))
+         if (any(candidate == candidate_tension)) then
+            call find_largest_tension(self%contact%model, state, candidate == candidate_tension(2), largest, available)
+         else
+            call find_largest_von_mises(self%contact%model, state, candidate == candidate_von_mises(2), largest, available)
+         end if
+         if (.not. available) return
+         found%value = largest%value
+         found%x = largest%x
+         found%y = largest%y
+         found%row = extremes%row(candidate)
+      end associate
+   end subroutine search
+
+   !> Whether the extremes are those of the last complete cycle.
+   pure logical function ends_with_cycle(self)
+      class(simulation_type), intent(in) :: self
+
+      ends_with_cycle = self%cycle_count > 0
+      if (ends_with_cycle) ends_with_cycle = self%cycles(self%cycle_count)%step >= self%extremes%step
+   end function ends_with_cycle
+
+   !> What the extremes are taken over, see mfv_load_extremes.
+   pure integer function stretch(self)
+      class(simulation_type), intent(in) :: self
+
+      stretch = self%extremes%stretch
+      if (ends_with_cycle(self)) stretch = self%cycles(self%cycle_count)%extremes%stretch
+   end function stretch
+
+   !> The extremes of the last complete cycle or, without one, of the rows of &history or all steps so far; of rows that follow the
+   !> cycles, or a first cycle that is not complete: of these. `von_mises`: whether to search for the largest von Mises stresses.
+   subroutine find_extremes(self, von_mises, extremes)
+      class(simulation_type), intent(in) :: self
+      logical, intent(in) :: von_mises
+      type(load_extremes_type), intent(out) :: extremes
+      integer :: i, mark
+
+      extremes = self%extremes
+      mark = mark_candidate
+      if (ends_with_cycle(self)) then
+         extremes = self%cycles(self%cycle_count)%extremes
+         mark = mark_last_cycle - candidate_von_mises(1) + 1
+      else
+         do i = 1, size(candidate_tension)
+            call search(self, mark, candidate_tension(i), extremes)
+         end do
+      end if
+      if (.not. von_mises) return
+      do i = 1, size(candidate_von_mises)
+         call search(self, mark, candidate_von_mises(i), extremes)
+      end do
+   end subroutine find_extremes
 
    !> Largest change of a traction since the state `before` on the same mesh, relative to the largest traction so far.
    pure real(wp) function change_since(self, before)

@@ -274,6 +274,9 @@ contains
       call keys%add('output', 'states', kind_choice, 'states saved at the end of every step, and at every turning point '// &
                     '(reversals) or those of the last cycle (last_cycle) of its cycles; or only the last one; steps if '// &
                     'omitted in a case with &history', default='reversals', choices='reversals steps none last_cycle')
+      call keys%add('output', 'stress_at', kind_real, 'x at which /history has the stress along the surface of both bodies, '// &
+                    'with the largest tension along it and its x, at the end of every step, row and turning point; if omitted: '// &
+                    'neither', unit='length')
       call keys%add('output', 'error_estimate', kind_logical, 'whether the case is also solved on coarser meshes, to estimate '// &
                     'the discretisation error of half-width, stick ratio, peak tractions, dissipation, largest tension and loops', &
                     default='.false.')

@@ -66,6 +66,7 @@ contains
          r%path%state = copy%padded(snapshot_type(state=r%path%state, added=r%added))
          r%added = copy%contact%model%added
       end associate
+      call copy%slip_range%widen(copy%contact%model%nodes(), copy%contact%model%added)
       do i = 1, mark_count
          if (copy%marks(i)%step > 0) copy%marks(i)%state = copy%padded(copy%marks(i))
       end do
@@ -134,6 +135,11 @@ contains
          if (self%reading .and. .not. allocated(self%error)) call read_snapshots(self, simulation, nodes)
          call exchange_internals(self, simulation)
          call exchange_state(self, 'state_', nodes, r%path%state)
+      end associate
+      associate (slip => simulation%slip_range)
+         if (self%reading) call slip%widen(nodes, simulation%restart%added)
+         call self%exchange('lowest_slip', slip%lowest, 'smallest slip of the nodes in contact in the present cycle')
+         call self%exchange('highest_slip', slip%highest, 'largest slip of the nodes in contact in the present cycle')
       end associate
       do i = 1, mark_count
          associate (mark => simulation%marks(i), name => 'mark_'//to_text(i))
@@ -224,6 +230,10 @@ contains
          call self%exchange('slip_zones', list, internal)
          r%slip = transfer(list, r%slip)
       end associate
+      list = transfer(simulation%extremes, [0])
+      call self%exchange('extremes', list, internal)
+      simulation%extremes = transfer(list, simulation%extremes)
+      call self%exchange('yield_estimate', simulation%yield_estimate, 'estimates of the largest von Mises stresses so far')
       list = transfer(simulation%leg%cycle, [0])
       length = size(list)
       call self%exchange('cycle_under_way', list, internal)
