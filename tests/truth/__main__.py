@@ -54,14 +54,18 @@ def main() -> int:
 def _records(seeds: range, processes: int, path: Path) -> list[dict[str, Any]]:
     """Records of all seeds, also written to a file as they come."""
     chunks = [seeds[start : start + CHUNK] for start in range(0, len(seeds), CHUNK)]
-    found = []
+    found: list[dict[str, Any]] = []
     with ThreadPoolExecutor(processes) as pool, path.open("w") as file, tqdm(total=len(seeds), disable=None) as bar:
-        for records in pool.map(lambda chunk: list(_of_chunk(chunk)), chunks):
-            for one in records:
-                print(json.dumps(one), file=file, flush=True)
-            found += records
-            bar.update(len(records))
-    return found
+
+        def collect(chunk: range) -> None:
+            for one in _of_chunk(chunk):
+                found.append(one)
+                file.write(json.dumps(one) + "\n")
+                file.flush()
+                bar.update()
+
+        list(pool.map(collect, chunks))
+    return sorted(found, key=lambda one: one["seed"])
 
 
 def _of_chunk(seeds: range) -> Iterator[dict[str, Any]]:
@@ -69,14 +73,15 @@ def _of_chunk(seeds: range) -> Iterator[dict[str, Any]]:
     seed = seeds.start
     while seed < seeds.stop:
         command = [sys.executable, "-m", "truth", "--worker", "--seed", str(seed), "--scenes", str(seeds.stop - seed)]
-        done = subprocess.run(command, capture_output=True, text=True)
-        records = [json.loads(line) for line in done.stdout.splitlines()]
-        yield from records
-        seed += len(records)
+        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+            assert process.stdout
+            for line in process.stdout:
+                yield json.loads(line)
+                seed += 1
         if seed < seeds.stop:
-            message = done.stderr.strip().splitlines()[-1:] or [f"exit code {done.returncode}"]
-            made = problem(seed)
-            yield {"seed": seed, **made.labels, "fate": "crash", "message": message[0], "verdicts": {}, "relations": {}}
+            labels = problem(seed).labels
+            message = f"exit code {process.returncode}"
+            yield {"seed": seed, **labels, "fate": "crash", "message": message, "verdicts": {}, "relations": {}, "ordinary": False}
             seed += 1
 
 

@@ -18,6 +18,8 @@ GROUPS = ("state", "summary", "observables", "cycles", "patches")
 TOLERANCE = 1.0e-8
 #: The largest tension is searched for, and is at a place where two branches of a curve meet.
 TENSION = 1.0e-6
+#: Of quantities that are much smaller than their natural scale.
+ROUND_OFF = 1.0e-11
 #: What depends on how a problem is solved, not on the problem.
 WORK = {
     "events", "leaps", "linear_solves", "largest_residual", "steps_done", "cycle_change", "change", "status", "step",
@@ -76,7 +78,7 @@ def differences(
         ends = np.isfinite(changed)
         size = np.max(np.abs(actual[ends]), initial=scales.where_it_vanishes(name))
         error = np.max(np.abs(changed[ends] - actual[ends]), initial=0.0)
-        if error > max(tolerance, TENSION if "tension" in name else 0.0) * size:
+        if error > max(max(tolerance, TENSION if "tension" in name else 0.0) * size, ROUND_OFF * scales.natural(name)):
             found[path] = float(error / size)
     if not common:
         found.update({path: np.inf for path in there if path not in expected})

@@ -83,7 +83,7 @@ def _compliance(body: Keys, plane: str) -> float:
 
 
 def _add_bodies(draw: Draw, made: Problem, sizes: Sizes) -> None:
-    kind = draw.one_of(cylinder=20, disks=8, hole=7, pin=5, power=10, wedge=7, rounded=12, flat=6, profile=22)
+    kind = draw.one_of(cylinder=20, disks=8, hole=7, pin=3, power=10, wedge=7, rounded=12, flat=6, profile=22)
     radius, share = draw.power(-3, 3), draw.power(-2.0, -1.0)
     a = sizes.half_width = radius * share
     lower: Keys = {"shape": "half_plane"}
@@ -176,7 +176,7 @@ def _profile(draw: Draw, made: Problem, a: float, radius: float) -> Keys:
 
 
 def _add_friction(draw: Draw, made: Problem, sizes: Sizes) -> str:
-    law = draw.one_of(none=6, coulomb=66, static_kinetic=6, weakening=12, dahl=10)
+    law = draw.one_of(none=6, coulomb=66, static_kinetic=6, weakening=9, dahl=6)
     mu = draw.power(-1.2, 0.0)
     sizes.mu = 0.0 if law == "none" else mu
     sizes.shift = mu * sizes.approach
@@ -336,7 +336,7 @@ def _rotation(draw: Draw, made: Problem, sizes: Sizes) -> None:
 
 
 def _wear(draw: Draw, made: Problem, sizes: Sizes) -> None:
-    cycles = draw.whole(5, 40)
+    cycles = draw.whole(5, 25)
     depth = sizes.force / sizes.modulus
     pressure = sizes.force / sizes.half_width
     wear = draw.power(-2.5, 0.7) * depth / (pressure * sizes.shift * cycles)
@@ -376,14 +376,14 @@ def _add_mesh(draw: Draw, made: Problem, sizes: Sizes, law: str, loads: str) -> 
     shape = made.labels["shape"]
     keys: Keys = {}
     costly = loads in ("signal", "wear") or law == "dahl" or made.one("scene")["coupling"] == "full"
-    nodes = int(draw.power(1.45, 1.75 if costly else 1.95))
-    kind = draw.one_of(given=50, free=22, default=12, edges=12, ends=4)
+    nodes = int(draw.power(1.4, 1.65 if costly else 1.85))
+    kind = draw.one_of(given=50, free=22, default=9, edges=10, ends=4)
     if shape == "pin":
         keys.update(normals="radial", gap="exact")
     elif made.labels["shape"] in ("cylinder", "disks") and draw.chance(0.3):
         keys["gap"] = "parabolic"
-    if loads == "rotation" or law in ("dahl", "weakening"):
-        nodes = int(draw.power(1.4, 1.55))
+    if loads == "rotation" or law in ("dahl", "weakening") or shape == "pin":
+        nodes = draw.whole(18, 28)
         kind = "given"
     if kind == "default" and costly:
         kind = "free"
@@ -397,7 +397,7 @@ def _add_mesh(draw: Draw, made: Problem, sizes: Sizes, law: str, loads: str) -> 
     if kind == "edges":
         keys["refine"] = "edges"
         if draw.chance(0.6):
-            keys["nodes"] = draw.whole(48, 80)
+            keys["nodes"] = draw.whole(40, 64)
     elif kind == "ends":
         places = np.sin(np.linspace(-1.0, 1.0, nodes + 1) * 0.45 * np.pi)
         keys["ends"] = (wide * places / places[-1]).tolist()

@@ -15,12 +15,13 @@ import mfv
 #: Names of sides in those of fields.
 SIDES = [("left", "right")]
 #: Part of the natural scale below which a quantity that is positive, such as a dissipation, counts as zero.
-NEGLIGIBLE = 1.0e-9
+NEGLIGIBLE = 1.0e-6
 
 #: Names of quantities and the attribute of `Scales` that is their scale; the first that matches counts.
 _TABLE = [
     (r".*(left|right)|contact_centre.*|.*_edge|.*tension_x|x|contact_length|slip_zone.*", "half_width"),
-    (r"stick_ratio.*|edge_stick_ratio|patch_shift.*|change", "one"),
+    (r"stick_ratio.*|edge_stick_ratio|patch_shift.*|change|loss_factor|creepage_number", "one"),
+    (r"dissipation_number", "friction_squared"),
     (r"tangential_force|force_amplitude", "friction_force"),
     (r"normal_force", "normal_force"),
     (r"moment", "moment"),
@@ -35,7 +36,7 @@ _TABLE = [
     (r"creepage", "creepage"),
 ]  # fmt: skip
 #: Those that are positive where they are not zero: relative to themselves unless negligible.
-_POSITIVE = r"dissipation|.*cycle_dissipation|peak_pressure|peak_shear|contact_length|force_amplitude|shift_amplitude|friction_work"
+_POSITIVE = r"loss_factor|dissipation|dissipation_number|.*cycle_dissipation|peak_pressure|peak_shear|contact_length|force_amplitude|shift_amplitude|friction_work"
 
 
 def other_side(name: str) -> str:
@@ -60,6 +61,7 @@ class Scales:
         self.half_width = 0.5 * (span if span > 0 else length if length > 0 else float(x[-1] - x[0]))
         friction = result.mesh.get("static_friction")
         mu = 0.0 if friction is None else float(np.max(friction))
+        self.friction_squared = mu**2
         self.normal_force = max(abs(float(step.normal_force)) for step in steps)
         self.friction_force = mu * self.normal_force
         # A matrix has none.
@@ -76,9 +78,11 @@ class Scales:
         self.work_per_length = self.work / self.half_width
         self.creepage = mu * self.half_width * abs(float(result.scene.get("curvature", 0.0)))
 
+    def natural(self, name: str) -> float:
+        """Scale of a quantity that can be zero; 0 if it has none."""
+        return next((float(getattr(self, attribute)) for pattern, attribute in _TABLE if re.fullmatch(pattern, name)), 0.0)
+
     def where_it_vanishes(self, name: str) -> float:
-        """Scale of a quantity that can be zero by symmetry; for the others a negligible part of it, 0 if it has none."""
-        for pattern, attribute in _TABLE:
-            if re.fullmatch(pattern, name):
-                return float(getattr(self, attribute)) * (NEGLIGIBLE if re.fullmatch(_POSITIVE, name) else 1.0)
-        return 0.0
+        """The scale to which errors are relative if the quantity is smaller; a negligible part of the natural scale of those that are
+        positive."""
+        return self.natural(name) * (NEGLIGIBLE if re.fullmatch(_POSITIVE, name) else 1.0)

@@ -16,10 +16,12 @@ from mfv import reference
 
 from .problem import Problem
 
-#: How much finer the meshes of the truth are; different parities, so that a tip or corner lies at a node or between nodes.
-FINER = (6, 9)
+#: How much finer the meshes of the truth are. One more interval on the second: a tip or corner lies at a node, or between nodes.
+FINER = (6, 8)
 #: Accuracy of the large increments of the finer one of them.
 ACCURACY = 1.0e-4
+#: Nodes up to which it has events, too.
+MOST_FOR_EVENTS = 400
 #: Fewest intervals on the equal mesh in place of unequal ones.
 EQUAL = 10
 
@@ -41,10 +43,10 @@ def truth_of(problem: Problem, base: mfv.Result) -> Truth:
 def fine_problems(problem: Problem, base: mfv.Result) -> tuple[Problem, Problem]:
     """The problem on two fine meshes. One is equal where the other is graded; one has large increments where they are possible."""
     fine = []
-    for number, factor in enumerate(FINER):
+    for number in range(len(FINER)):
         made = problem.copy()
-        made.one("output").update(states="steps", history="none", error_estimate=False)
-        _refine(made, base, factor, equal=number == 1)
+        made.one("output").update(states="steps", history="steps", error_estimate=False)
+        _refine(made, base, number)
         _solve_otherwise(made, number)
         if made.has("wear"):
             made.one("wear").update(block=1)
@@ -52,7 +54,9 @@ def fine_problems(problem: Problem, base: mfv.Result) -> tuple[Problem, Problem]
     return fine[0], fine[1]
 
 
-def _refine(made: Problem, base: mfv.Result, factor: int, equal: bool) -> None:
+def _refine(made: Problem, base: mfv.Result, number: int) -> None:
+    """`number`: 0 for the first mesh of the truth, 1 for the second, which is equal where the other is graded."""
+    factor = FINER[number]
     keys = made.one("mesh")
     if "ends" in keys:
         ends = np.array(keys["ends"])
@@ -60,10 +64,10 @@ def _refine(made: Problem, base: mfv.Result, factor: int, equal: bool) -> None:
         keys["ends"] = [*(ends[:-1, None] + parts * np.diff(ends)[:, None]).ravel(), ends[-1]]
         return
     nodes = keys.get("nodes", len(base.mesh.x))
-    if keys.get("refine") == "edges" and equal:
+    if keys.get("refine") == "edges" and number == 1:
         del keys["refine"]
         factor = EQUAL
-    keys["nodes"] = factor * nodes
+    keys["nodes"] = factor * nodes + number
 
 
 def _solve_otherwise(made: Problem, number: int) -> None:
@@ -76,7 +80,12 @@ def _solve_otherwise(made: Problem, number: int) -> None:
     keys["stepping"] = "event"
     if number == 0:
         keys["linear_solver"] = "reduced"
-    elif made.has("friction") and made.one("friction")["law"] == "coulomb" and not _is_strained(made):
+    elif (
+        made.one("mesh").get("nodes", 0) > MOST_FOR_EVENTS
+        and made.has("friction")
+        and made.one("friction")["law"] == "coulomb"
+        and not _is_strained(made)
+    ):
         keys.update(stepping="leap", accuracy=ACCURACY)
 
 

@@ -116,7 +116,7 @@ def quantities(result: mfv.Result) -> dict[str, np.ndarray]:
 def judge(problem: Problem, base: mfv.Result, truth: Truth) -> dict[str, Verdict]:
     """The verdict of every quantity of a complete run."""
     coarser, finer = quantities(truth.coarser), quantities(truth.finer)
-    scales, limit = Scales(truth.finer), max(RIGHT, float(_accuracy(problem)))
+    scales, limit = Scales(truth.finer), max(RIGHT, _accuracy(problem))
     patterns = flagged_quantities(base)
     found = {}
     for path, values in quantities(base).items():
@@ -147,17 +147,19 @@ def closed_or(truth: Truth, path: str, one: float) -> float:
 
 
 def _accuracy(problem: Problem) -> float:
-    return float(problem.one("solver").get("accuracy", 0.0)) if problem.has("solver") else 0.0
+    """The error that the problem allows: by large increments, or by blocks of cycles of wear."""
+    accuracy = float(problem.one("solver").get("accuracy", 0.0)) if problem.has("solver") else 0.0
+    return max(accuracy, float(problem.one("wear").get("tolerance", 0.05)) if problem.has("wear") else 0.0)
 
 
 def _aligned(group: str, base: mfv.Result, fine: mfv.Result, values: np.ndarray | None) -> np.ndarray | None:
     """Values of the cycles that the base has; of patches if they are as many."""
     if values is None or group != "cycles":
         return values
-    places = np.searchsorted(fine.cycles.cycle, base.cycles.cycle)
-    if len(fine.cycles.cycle) == 0 or np.any(places >= len(fine.cycles.cycle)) or len(values) != len(fine.cycles.cycle):
+    places = [np.flatnonzero(fine.cycles.cycle == cycle) for cycle in base.cycles.cycle]
+    if any(len(place) == 0 for place in places) or len(values) != len(fine.cycles.cycle):
         return None
-    return values[places]
+    return values[np.concatenate(places)]
 
 
 def _judge_one(
