@@ -39,6 +39,11 @@ POSITIONS = {
     "contact_centre", "contact_centre_reversal", "contact_centre_return",
     "lower_tension_x", "upper_tension_x", "contact_edge", "stick_edge",
 }  # fmt: skip
+#: Fields of the patches, from left to right. (Those of the same name elsewhere are one number.)
+OF_PATCHES = {
+    "contact_left", "contact_right", "contact_length", "normal_force", "tangential_force", "peak_pressure", "peak_shear",
+    "stick_zones", "stick_left", "stick_right", "stick_length",
+}  # fmt: skip
 
 
 def outputs(result: mfv.Result) -> dict[str, tuple[str, np.ndarray]]:
@@ -95,7 +100,7 @@ def is_along_the_surface(name: str) -> bool:
     return name in {
         "pressure", "shear", "gap", "slip", "friction_work", "normal_displacement", "tangential_displacement",
         "upper_normal_displacement", "upper_tangential_displacement", "x", "contact_edge", "stick_edge",
-    }  # fmt: skip
+    } | OF_PATCHES  # fmt: skip
 
 
 def other_body(name: str) -> str:
