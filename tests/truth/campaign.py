@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter, defaultdict
 from typing import Any
 
@@ -34,7 +35,8 @@ def record_of(made: Problem, seed: int) -> dict[str, Any]:
     """What became of a problem: its fate, verdicts by quantity, differences by relation.
 
     Fates: refused; judged; too long; ended alike; ends early (only on the problem's own mesh); goes on (only there); no limit (static and
-    kinetic friction: there is none); meshes disagree.
+    kinetic friction: there is none); meshes disagree (the two fine ones); mesh too narrow (of a given half-width: coarse intervals reach its
+    end first).
     """
     found: dict[str, Any] = {"seed": seed, **describe(made), "fate": "judged", "verdicts": {}, "relations": {}}
     try:
@@ -76,6 +78,8 @@ def _judge(made: Problem, base: mfv.Result, found: dict[str, Any]) -> None:
         found["fate"] = "too long"
     elif fine[0] != fine[1]:
         found["fate"] = "meshes disagree"
+    elif base.outcome == "mesh exceeded" and made.has("mesh", "half_width"):
+        found["fate"] = "mesh too narrow"
     elif base.outcome != fine[0]:
         found["fate"] = "ends early" if fine[0] == "complete" else "goes on" if base.outcome == "complete" else "ends otherwise"
         found["message"] = base.message
@@ -95,33 +99,58 @@ def findings(one: dict[str, Any]) -> list[str]:
     return found
 
 
+#: Rows of the table: quantities by name, the first that matches counts.
+FAMILIES = {
+    "edges of the contact, number of patches": r"contact_(half_width|left|right|length|centre)|edge_half_width|half_width_number|patches",
+    "stick zones": r"(edge_)?stick_(ratio|left|right|length|zones)",
+    "peak pressure": r"peak_pressure|pressure_number",
+    "peak shear": r"peak_shear|shear_number",
+    "largest tension, its place": r".*tension.*",
+    "dissipation": r"dissipation",
+    "dissipation of cycles, loss factor, works": r".*cycle_dissipation|dissipation_number|loss_factor|.*_work",
+    "stiffnesses, amplitudes": r".*stiffness.*|.*amplitude|force_number|shift_number",
+    "turning points of cycles": r"stick_ratio_.*|patch_shift_.*|contact_centre_.*",
+    "forces, motions": r".*_force|approach.*|shift.*|rotation.*|moment.*|.*_bulk_stress|.*_contraction.*",
+    "creepage": r"creepage.*",
+    "wear": r"worn_area|wear_depth",
+}
+
+
+def family(path: str) -> str:
+    """The row of a quantity in the table."""
+    group, name = path.split("/")
+    if group == "cycles" and name in ("dissipation",):
+        name = "cycle_dissipation"
+    return next((row for row, names in FAMILIES.items() if re.fullmatch(names, name)), "others")
+
+
+def _row(title: str, count: Counter[str]) -> str:
+    every = sum(count.values())
+    shares = [f"{100 * count[word] / max(every, 1):.1f} %" for word in WORDS[:-1]]
+    return f"| {title} | {every} | {' | '.join(shares)} | {count['finding']} |"
+
+
 def table(records: list[dict[str, Any]]) -> str:
-    """The table of verdicts by quantity, of bars by mesh, and of relations, as Markdown."""
-    counts: dict[str, Counter[str]] = defaultdict(Counter)
+    """Verdicts by family of quantities, bars by kind of mesh, relations, and fates, as Markdown."""
+    counts: dict[str, Counter[str]] = {name: Counter() for name in ("all", "ordinary scenes", *FAMILIES, "others")}
     bars: dict[str, Counter[bool]] = defaultdict(Counter)
-    ordinary: Counter[str] = Counter()
     related: dict[str, Counter[bool]] = defaultdict(Counter)
     for one in records:
         for path, verdict in one["verdicts"].items():
-            counts[path][verdict[0]] += 1
-            if one["ordinary"]:
-                ordinary[verdict[0]] += 1
+            for name in ("all", family(path), *(["ordinary scenes"] if one["ordinary"] else [])):
+                counts[name][verdict[0]] += 1
         for path, holds in one.get("holds", {}).items():
             if path.startswith("observables/"):
                 bars[one["mesh"]][holds] += 1
         for name, paths in one["relations"].items():
             related[name][bool(paths)] += 1
-    total = sum(counts.values(), Counter())
-    lines = [f"| quantity | scenes | {' | '.join(WORDS)} |", "| --- " * (len(WORDS) + 2) + "|"]
-    for path, count in [("all", total), ("of ordinary scenes", ordinary), *sorted(counts.items())]:
-        every = sum(count.values())
-        shares = [f"{100 * count[word] / max(every, 1):.1f} %" if word != "finding" else str(count[word]) for word in WORDS]
-        lines.append(f"| {path} | {every} | {' | '.join(shares)} |")
-    lines += ["", "| mesh | bars | within twice |", "| --- | --- | --- |"]
+    lines = [f"| quantities | numbers | {' | '.join(WORDS)} |", "| --- " * (len(WORDS) + 2) + "|"]
+    lines += [_row(name, count) for name, count in counts.items() if sum(count.values())]
+    lines += ["", "| mesh | bars that the truth decides | within twice |", "| --- | --- | --- |"]
     for mesh, held in sorted(bars.items()):
         every = held[True] + held[False]
         lines.append(f"| {mesh} | {every} | {100 * held[True] / every:.1f} % |")
-    lines += ["", "| relation | scenes | differ |", "| --- | --- | --- |"]
+    lines += ["", "| the same problem | scenes | differ |", "| --- | --- | --- |"]
     lines += [f"| {name} | {both[True] + both[False]} | {both[True]} |" for name, both in sorted(related.items())]
     fates = Counter(one["fate"] for one in records)
     lines += ["", "| fate | scenes |", "| --- | --- |", *(f"| {fate} | {number} |" for fate, number in fates.most_common())]

@@ -99,7 +99,7 @@ def mirrored(name: str, unit: str, values: np.ndarray) -> tuple[str, np.ndarray]
 def is_along_the_surface(name: str) -> bool:
     return name in {
         "pressure", "shear", "gap", "slip", "friction_work", "normal_displacement", "tangential_displacement",
-        "upper_normal_displacement", "upper_tangential_displacement", "x", "contact_edge", "stick_edge",
+        "upper_normal_displacement", "upper_tangential_displacement", "x", "contact_edge", "stick_edge", "wear_depth",
     } | OF_PATCHES  # fmt: skip
 
 

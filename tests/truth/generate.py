@@ -177,6 +177,8 @@ def _profile(draw: Draw, made: Problem, a: float, radius: float) -> Keys:
 
 def _add_friction(draw: Draw, made: Problem, sizes: Sizes) -> str:
     law = draw.one_of(none=6, coulomb=66, static_kinetic=6, weakening=9, dahl=6)
+    if law in ("weakening", "dahl") and made.labels["shape"] in ("pin", "flat"):
+        law = "coulomb"  # thousands of increments on the meshes of the truth
     mu = draw.power(-1.2, 0.0)
     sizes.mu = 0.0 if law == "none" else mu
     sizes.shift = mu * sizes.approach
@@ -383,7 +385,7 @@ def _add_mesh(draw: Draw, made: Problem, sizes: Sizes, law: str, loads: str) -> 
     elif made.labels["shape"] in ("cylinder", "disks") and draw.chance(0.3):
         keys["gap"] = "parabolic"
     if loads == "rotation" or law in ("dahl", "weakening") or shape == "pin":
-        nodes = draw.whole(18, 28)
+        nodes = draw.whole(16, 22) if law == "dahl" else draw.whole(18, 28)
         kind = "given"
     if kind == "default" and costly:
         kind = "free"

@@ -19,7 +19,7 @@ from mfv.result import Result
 #: Keys that name a file of two or three columns, or of columns with names.
 FILE_KEYS = ("file", "mu_file")
 #: Load increments times nodes after which a run is given up: a count, so that no verdict depends on the speed of the machine.
-MOST_WORK = 3_000_000
+MOST_WORK = 1_000_000
 
 Table = dict[str, list[float]]
 Keys = dict[str, Any]

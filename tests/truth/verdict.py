@@ -170,7 +170,8 @@ def _judge_one(
         both = math.isnan(one) and math.isnan(two)
         return Verdict("right" if both else "flagged", 0.0, math.nan, 0.0, value, two)
     if math.isnan(one) or math.isnan(two):
-        undefined = math.isnan(one) and math.isnan(two) and not flagged
+        # A half-width is undefined where there are several patches, whose number has its own verdict.
+        undefined = math.isnan(one) and math.isnan(two) and not flagged and not re.fullmatch(_EDGES, name)
         return Verdict("finding" if undefined else "unknown", math.inf, bar, 0.0, value, two)
     scale = max(abs(two), natural, size, 1e-300)
     error, uncertainty = abs(value - two) / scale, 2.0 * abs(two - one) / scale
