@@ -9,6 +9,7 @@ import argparse
 import json
 import subprocess
 import sys
+import time
 from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -39,7 +40,10 @@ def main() -> int:
     seeds = range(given.seed, given.seed + given.scenes)
     if given.worker:
         for seed in seeds:
-            print(json.dumps(record(seed), default=float), flush=True)
+            started = time.process_time()
+            found = record(seed)
+            found["seconds"] = time.process_time() - started  # to choose the seeds of the suite
+            print(json.dumps(found, default=float), flush=True)
         return 0
     given.folder.mkdir(parents=True, exist_ok=True)
     records = _records(seeds, given.processes, given.folder / "records.jsonl")

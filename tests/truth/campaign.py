@@ -16,7 +16,7 @@ from .generate import describe, problem
 from .problem import Problem
 from .relations import relations
 from .truth import truth_of
-from .verdict import WORDS, judge
+from .verdict import WORDS, judge, public_name
 
 #: Relations tried with one problem.
 RELATIONS_OF_ONE = 2
@@ -118,10 +118,7 @@ FAMILIES = {
 
 def family(path: str) -> str:
     """The row of a quantity in the table."""
-    group, name = path.split("/")
-    if group == "cycles" and name in ("dissipation",):
-        name = "cycle_dissipation"
-    return next((row for row, names in FAMILIES.items() if re.fullmatch(names, name)), "others")
+    return next((row for row, names in FAMILIES.items() if re.fullmatch(names, public_name(path))), "others")
 
 
 def _row(title: str, count: Counter[str]) -> str:
