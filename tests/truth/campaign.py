@@ -52,7 +52,10 @@ def record_of(made: Problem, seed: int) -> dict[str, Any]:
         found["relations"]["certificate"] = {"largest": float(base.summary.largest_residual)}
     if found["law"] != "static_kinetic":
         found["relations"].update(_related(made, base, seed))
-        _judge(made, base, found)
+        try:
+            _judge(made, base, found)
+        except errors.InputError as error:
+            return {**found, "fate": "refused", "message": str(error)}
     else:
         found["fate"] = "no limit"
     return found

@@ -156,8 +156,8 @@ def _loads(problem: Problem) -> tuple[float, float, float] | None:
     pressed without shear."""
     steps = problem.all("step")
     friction = problem.one("friction") if problem.has("friction") else {}
-    law, coupling = friction.get("law", "none"), problem.one("scene")["coupling"]
-    if problem.has("history") or problem.has("wear") or len(steps) > 2 or "normal_force" not in steps[0]:
+    law, coupling = friction.get("law", "none"), problem.one("scene").get("coupling", "full")
+    if problem.has("history") or problem.has("wear") or len(steps) not in (1, 2) or "normal_force" not in steps[0]:
         return None
     if law == "none":
         return (steps[0]["normal_force"], 0.0, 0.0) if len(steps) == 1 else None
