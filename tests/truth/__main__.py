@@ -20,11 +20,13 @@ from tqdm import tqdm
 
 from .campaign import findings, record, record_of, table
 from .generate import problem
-from .known import known_findings
+from .known import known_findings, suite_seeds, write_known
 from .shrink import shrunk
 
 #: Problems of one process.
 CHUNK = 20
+#: Before and after the table in a page.
+MARK = "<!-- truth -->\n"
 
 
 def main() -> int:
@@ -35,6 +37,8 @@ def main() -> int:
     parser.add_argument("--folder", type=Path, default=Path("truth"))
     parser.add_argument("--shrink", type=int, default=0, help="findings of which the smallest problem is searched for")
     parser.add_argument("--only", help="--shrink: only findings that begin with this")
+    parser.add_argument("--update-known", action="store_true", help="run the seeds of the suite and write known_findings.txt anew")
+    parser.add_argument("--document", type=Path, help="page whose part between '<!-- truth -->' marks becomes the table")
     parser.add_argument("--worker", action="store_true", help="write the records to the standard output")
     given = parser.parse_args()
     seeds = range(given.seed, given.seed + given.scenes)
@@ -45,6 +49,9 @@ def main() -> int:
             found["seconds"] = time.process_time() - started  # to choose the seeds of the suite
             print(json.dumps(found, default=float), flush=True)
         return 0
+    if given.update_known:
+        write_known([(seed, name) for seed in suite_seeds() for name in findings(record(seed))])
+        return 0
     given.folder.mkdir(parents=True, exist_ok=True)
     records = _records(seeds, given.processes, given.folder / "records.jsonl")
     (given.folder / "table.md").write_text(table(records))
@@ -52,6 +59,8 @@ def main() -> int:
     _list(records, given.folder / "findings.txt")
     for one in _chosen(records, given.shrink, given.only):
         _shrink(one, given.folder)
+    if given.document:
+        _document(given.document, records, given.seed)
     return _report(records, given.seed)
 
 
@@ -121,6 +130,14 @@ def _shrink(chosen: tuple[int, str], folder: Path) -> None:
     smallest.write(where)
     verdict = record_of(smallest, seed)["verdicts"].get(name)
     (where / "finding.txt").write_text(f"{name}: error, bar, uncertainty, value, truth: {verdict}\n")
+
+
+def _document(page: Path, records: list[dict[str, Any]], seed: int) -> None:
+    """Replace the table in a page."""
+    before, _, rest = page.read_text().partition(MARK)
+    _, _, after = rest.partition(MARK)
+    text = f"\n{len(records)} scenes from seed {seed} (`scripts/deep-check.sh truth`):\n\n{table(records)}"
+    page.write_text(before + MARK + text + MARK + after)
 
 
 def _report(records: list[dict[str, Any]], seed: int) -> int:

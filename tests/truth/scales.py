@@ -16,6 +16,8 @@ import mfv
 SIDES = [("left", "right")]
 #: Part of the natural scale below which a quantity that is positive, such as a dissipation, counts as zero.
 NEGLIGIBLE = 1.0e-6
+#: Coefficient of friction below which a tangential force is relative to the normal force.
+SLIPPERY = 1.0e-3
 
 #: Names of quantities and the attribute of `Scales` that is their scale; the first that matches counts.
 _TABLE = [
@@ -63,7 +65,7 @@ class Scales:
         mu = 0.0 if friction is None else float(np.max(friction))
         self.friction_squared = mu**2
         self.normal_force = max(abs(float(step.normal_force)) for step in steps)
-        self.friction_force = mu * self.normal_force
+        self.friction_force = max(mu, SLIPPERY) * self.normal_force
         # A matrix has none.
         modulus = float(result.scene.get("contact_modulus", self.normal_force / max(abs(float(summary.approach)), 1e-300)))
         self.pressure = 2.0 * self.normal_force / (math.pi * self.half_width)
@@ -74,7 +76,7 @@ class Scales:
         self.rotation = self.approach / self.half_width
         self.moment = self.normal_force * self.half_width
         self.contraction = self.shift * self.half_width
-        self.work = self.friction_force * self.shift
+        self.work = mu * self.normal_force * self.shift
         self.work_per_length = self.work / self.half_width
         self.creepage = mu * self.half_width * abs(float(result.scene.get("curvature", 0.0)))
 
