@@ -84,7 +84,7 @@ def differences(
         size = np.max(np.abs(actual[ends]), initial=scales.where_it_vanishes(name))
         error = np.max(np.abs(changed[ends] - actual[ends]), initial=0.0)
         if error > max(max(tolerance, TENSION if "tension" in name else 0.0) * size, ROUND_OFF * scales.natural(name)):
-            found[path] = float(error / size)
+            found[path] = float(error / size) if size > 0.0 else np.inf
     if not common:
         found.update({path: np.inf for path in there if path not in expected})
     return found

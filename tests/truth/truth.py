@@ -49,6 +49,7 @@ def fine_problems(problem: Problem, base: mfv.Result) -> tuple[Problem, Problem]
         _refine(made, base, number)
         _solve_otherwise(made, number)
         if made.has("wear"):
+            made.one("wear").pop("tolerance", None)
             made.one("wear").update(block=1)
         fine.append(made)
     return fine[0], fine[1]

@@ -143,7 +143,8 @@ def judge(problem: Problem, base: mfv.Result, truth: Truth) -> dict[str, Verdict
         there = [_aligned(group, base, result, fine.get(path)) for result, fine in ((truth.coarser, coarser), (truth.finer, finer))]
         if there[0] is None or there[1] is None or any(len(other) != len(values) for other in there):
             continue
-        bar = bar_of(base, path, float(values[0]) if len(values) else math.nan)
+        # Of cycles all have the relative bar of the last one.
+        bar = bar_of(base, path, float(values[-1]) if len(values) else math.nan)
         flagged = bar == math.inf or any(re.fullmatch(pattern, public_name(path)) for pattern in patterns)
         right = limit
         if path in COUNTED:
@@ -220,8 +221,8 @@ def bar_of(base: mfv.Result, path: str, value: float) -> float:
     group, name = path.split("/")
     if re.fullmatch(f"{_POSITION}|{_STICK_POSITION}", name) and group != "cycles":
         return _bar_of_position(base, name)
-    names = BARS_OF.get(name, ())
-    several = (group == "cycles" and len(base.cycles.cycle) > 1) or (group == "patches" and len(base.patches.patch) > 1)
+    names = BARS_OF.get(public_name(path), ())
+    several = group == "patches" and len(base.patches.patch) > 1
     if not names or several or path in COUNTED:
         return math.nan
     relative = 0.0
