@@ -38,7 +38,10 @@ _TABLE = [
     (r"creepage", "creepage"),
 ]  # fmt: skip
 #: Those that are positive where they are not zero: relative to themselves unless negligible.
-_POSITIVE = r"loss_factor|dissipation|dissipation_number|.*cycle_dissipation|peak_pressure|peak_shear|contact_length|force_amplitude|shift_amplitude|friction_work"
+_POSITIVE = (
+    r"loss_factor|dissipation|dissipation_number|.*cycle_dissipation|peak_pressure|peak_shear|contact_length|"
+    r"force_amplitude|shift_amplitude|friction_work"
+)
 
 
 def other_side(name: str) -> str:
