@@ -38,7 +38,7 @@ def test_two_turning_points_are_a_cycle_of_a_step() -> None:
     step = cylinder(PRESS, shear, mfv.Step(tangential_force=-2.0e-4, cycles=3), mesh=MESH).run(check=True)
     history = run(mfv.History(tangential_force=[-2.0e-4, 1.0e-4], cycles=3), PRESS, shear)
     for name in ("dissipation", "loss_factor", "secant_stiffness", "stick_ratio_reversal", "cycle", "tangential_force_work"):
-        assert np.allclose(history.cycles[name], step.cycles[name], rtol=1e-9), name
+        assert np.allclose(history.cycles[name], step.cycles[name], rtol=1e-9, equal_nan=True), name
 
 
 def test_a_list_a_table_and_a_file_are_the_same(tmp_path: Path) -> None:
@@ -104,7 +104,8 @@ def test_the_areas_of_the_loops_add_up_to_the_dissipation(keys: dict[str, Any]) 
         areas = sum(cycles[name][-1] for name in cycles if name.endswith("_work") and name != "friction_work")
         assert areas == pytest.approx(cycles.dissipation[-1], rel=1e-9)
         expected = cycles.tangential_force_work / (np.pi * cycles.force_amplitude * cycles.shift_amplitude)
-        assert np.allclose(cycles.loss_factor, expected)
+        assert np.allclose(cycles.loss_factor[1:], expected[1:])
+        assert np.isnan(cycles.loss_factor[0])  # the first loop is open
 
 
 def test_the_turning_point_where_a_history_ends_early() -> None:

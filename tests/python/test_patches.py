@@ -176,7 +176,7 @@ def test_error_estimate_of_several_patches_is_of_their_length() -> None:
     case = drawn(1)
     scene = mfv.Scene(
         mfv.Body.half_plane(shear_modulus=case.modulus, poisson_ratio=case.poisson_ratio), case.profile(),
-        mesh=mfv.Mesh(nodes=121, half_width=case.half_width), output=mfv.Output(error_estimate=True), **case.rest(),
+        mesh=mfv.Mesh(nodes=1001, half_width=case.half_width), output=mfv.Output(error_estimate=True), **case.rest(),
     )  # fmt: skip
     result = mfv.run(scene, check=True)
     assert "contact_half_width" not in result.error_estimate

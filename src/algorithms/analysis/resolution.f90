@@ -275,7 +275,6 @@ contains
          integer, intent(in) :: side
          real(wp) :: hidden
          integer :: zone, edge
-         logical :: upper
 
          associate (model => simulation%contact%model, state => simulation%contact%state)
             zone = nodes_at_edge(model, state, side)
@@ -283,9 +282,8 @@ contains
             if (simulation%slip%nodes_now > 0) hidden = hidden_width_at_edge(model, state, side)
             edge = findloc(in_contact(state%status), .true., dim=1, back=side > 0)
             if (zone > 0 .and. zone < resolved_nodes) then
-               upper = side*state%fields%shear(edge) > 0.0_wp
-               if (merge(has_interior(model%scene%upper), has_interior(model%scene%lower), upper)) &
-                  call add(merge('upper_tension', 'lower_tension', upper), zone, zone*model%width(edge))
+              if (merge(has_interior(model%scene%lower), has_interior(model%scene%upper), side*state%fields%shear(edge) < 0.0_wp)) &
+                  call add(adjustl(tensions(simulation)), zone, zone*model%width(edge))
             else if (hidden > 0.0_wp) then
                call add('stick_ratio'//tensions(simulation), 0, hidden)
             end if
