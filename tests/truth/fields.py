@@ -27,17 +27,21 @@ WORK = {
 }  # fmt: skip
 #: Numbers of nodes, which begin at the left end; and counts that an event at the very end of a step may change.
 NUMBERS = {"first_node", "last_node", "stick_nodes", "slip_nodes"}
+#: Places of values that occur at several places of a symmetric contact (test_load_extremes compares them with the states).
+TIED = {"largest_shear_x", "largest_slip_range_x"}
 #: Quantities that change their sign in the mirror image.
 ODD = {
     "tangential_force", "shift", "shear", "slip", "moment", "rotation", "tangential_displacement",
     "upper_tangential_displacement", "contact_centre", "contact_centre_reversal", "contact_centre_return",
     "patch_shift_loading", "patch_shift_reversal", "patch_shift_return", "creepage", "shift_drift", "rotation_drift",
     "lower_tension_x", "upper_tension_x", "contact_edge", "stick_edge",
+    "largest_lower_tension_x", "largest_upper_tension_x", "largest_pressure_x",
 }  # fmt: skip
 #: Positions: they change their sign when the picture is turned or mirrored, and move with the contact.
 POSITIONS = {
     "contact_centre", "contact_centre_reversal", "contact_centre_return",
     "lower_tension_x", "upper_tension_x", "contact_edge", "stick_edge",
+    "largest_lower_tension_x", "largest_upper_tension_x", "largest_pressure_x",
 }  # fmt: skip
 #: Fields of the patches, from left to right. (Those of the same name elsewhere are one number.)
 OF_PATCHES = {
@@ -52,7 +56,7 @@ def outputs(result: mfv.Result) -> dict[str, tuple[str, np.ndarray]]:
     for group in GROUPS:
         part = getattr(result, group, None)
         for name in part or ():
-            if name not in WORK | NUMBERS:
+            if name not in WORK | NUMBERS | TIED:
                 found[f"{group}/{name}"] = part.unit(name), np.atleast_1d(np.asarray(part[name]))
     return found
 

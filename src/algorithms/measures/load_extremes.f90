@@ -98,16 +98,16 @@ contains
 
       call find_patches(model, state, patches)
       edges = outermost_edges(patches)
-      i = maxloc(state%fields%pressure, dim=1)
-      if (edges%contact) call self%pressure%raise(state%fields%pressure(i), row, model%x(i))
+   if (edges%contact) call self%pressure%raise(maxval(state%fields%pressure), row, place_of_largest(model%x, state%fields%pressure))
       if (model%tangential) then
          do i = 1, size(patches)
             shear = largest_shear(model, state, patches(i), arc)
             call self%shear%raise(shear, row, model%scene%x_of_arc(arc))
          end do
          call slip%add(model, state)
-         i = maxloc(slip%highest - slip%lowest, dim=1)
-         if (slip%highest(i) >= slip%lowest(i)) call self%slip_range%raise(slip%highest(i) - slip%lowest(i), row, model%x(i))
+         associate (ranges => slip%highest - slip%lowest)
+            if (any(ranges >= 0.0_wp)) call self%slip_range%raise(maxval(ranges), row, place_of_largest(model%x, ranges))
+         end associate
       end if
       if (model%tangential .and. friction .and. edges%contact) then
          call self%highest_stick%raise(edges%stick_ratio(), row)
@@ -120,6 +120,20 @@ contains
          self%row = row
       end where
    end subroutine add_state
+
+   !> x of the largest value at the nodes: the middle of neighbouring nodes with the same value.
+   pure real(wp) function place_of_largest(x, values) result(place)
+      real(wp), intent(in) :: x(:), values(:)
+      integer :: first, last
+
+      first = findloc(values >= (1.0_wp - round_off)*maxval(values), .true., dim=1)
+      last = first
+      do while (last < size(x))
+         if (.not. values(last + 1) >= (1.0_wp - round_off)*maxval(values)) exit
+         last = last + 1
+      end do
+      place = 0.5_wp*(x(first) + x(last))
+   end function place_of_largest
 
    !> Whether a stretch repeats the `other` one as far as the search for a stress is concerned.
    pure logical function is_repeated(self, other, candidate)
