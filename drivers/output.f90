@@ -7,7 +7,7 @@ module mfv_output
    use mfv_safe_file, only: write_all
    use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR, status_exit_code
    use mfv_version, only: library_version
-   use mfv_command_line, only: end_program, has_argument
+   use mfv_command_line, only: end_at_once, end_program, has_argument
    implicit none
    private
    public :: begin_program, print_text, print_line
@@ -29,7 +29,7 @@ contains
          call find_small_limit(why)
          if (.not. allocated(why)) return
          write (error_unit, '(a)') program//': '//why
-         call end_program(status_exit_code(MFV_INPUT_ERROR))
+         call end_at_once(status_exit_code(MFV_INPUT_ERROR))
       end if
       call end_program(0)
    end subroutine begin_program

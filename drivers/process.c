@@ -110,19 +110,29 @@ __attribute__((constructor(101))) static void start_process(void) {
 }
 #endif
 
-static volatile sig_atomic_t interrupted;
+static volatile sig_atomic_t interrupted, saves, exit_code;
 
-/* A second signal ends the program at once. */
+/* Without a result to save the program ends at once, as it does after a second signal. */
 static void handle_signal(int number) {
+  static const char message[] = "interrupted before the first increment; no result is written\n";
+  if (!saves) {
+    if (write(STDERR_FILENO, message, sizeof message - 1) < 0) _exit(exit_code);
+    _exit(exit_code);
+  }
   interrupted = number;
   signal(number, SIG_DFL);
 }
 
-/* Have Ctrl-C and termination requests end the run at its next increment, with its result written. */
-void mfv_catch_interrupts(void) {
+/* Have Ctrl-C and termination requests end the program: with the exit code `code` until there is a result to save, then at the next
+   increment of the run, with its result written. */
+void mfv_catch_interrupts(int code) {
+  exit_code = code;
   signal(SIGINT, handle_signal);
   signal(SIGTERM, handle_signal);
 }
+
+/* From now on there is a result to save. */
+void mfv_begin_saving(void) { saves = 1; }
 
 /* Whether the program has been asked to end. */
 int mfv_is_interrupted(void) { return interrupted != 0; }

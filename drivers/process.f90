@@ -3,7 +3,7 @@ module mfv_process
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
    implicit none
    private
-   public :: begin_streams, find_small_limit, use_one_thread, catch_interrupts, is_interrupted
+   public :: begin_streams, find_small_limit, use_one_thread, catch_interrupts, begin_saving, is_interrupted
 
    interface
       subroutine begin_streams() bind(C, name='mfv_begin_streams')
@@ -12,8 +12,13 @@ module mfv_process
       subroutine use_one_thread() bind(C, name='mfv_use_one_thread')
       end subroutine use_one_thread
 
-      subroutine catch_interrupts() bind(C, name='mfv_catch_interrupts')
+      subroutine catch_interrupts(code) bind(C, name='mfv_catch_interrupts')
+         import :: c_int
+         integer(c_int), value :: code
       end subroutine catch_interrupts
+
+      subroutine begin_saving() bind(C, name='mfv_begin_saving')
+      end subroutine begin_saving
 
       integer(c_int) function c_find_small_limit(message, size) bind(C, name='mfv_find_small_limit')
          import :: c_char, c_int
