@@ -81,7 +81,7 @@ contains
       integer :: k
 
       self%middle(group) = 0.5_wp*(ends(1, 1) + ends(2, size(ends, 2)))
-      self%radius(group) = max(maxval(abs(ends - self%middle(group))), maxval(abs(place - self%middle(group))), tiny(1.0_wp))
+      self%radius(group) = max(maxval(abs(ends - self%middle(group))), tiny(1.0_wp))
       terms = sigma*weight
       shear = aimag(sigma)*weight
       do k = 0, most_moments

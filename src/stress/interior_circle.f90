@@ -51,6 +51,8 @@ module mfv_interior_circle
       logical :: disk = .true.
       real(wp) :: kappa = 1.0_wp
       type(element_type), allocatable :: elements(:)
+      !> Where they begin, radians.
+      real(wp), allocatable :: from(:)
       type(element_tree_type) :: tree
       !> Resultant F, and means N + i T of sigma_rr + i sigma_rtheta.
       complex(wp) :: force = 0.0_wp, mean = 0.0_wp
@@ -91,6 +93,7 @@ contains
             self%mean = self%mean + e%mean*e%half/pi
          end associate
       end do
+      self%from = from
       self%tree = tree_of(self%elements)
    end function new_circle_load
 
@@ -235,7 +238,7 @@ contains
       integer :: j
 
       traction = 0.0_wp
-      j = last_not_above(self%elements%from, angle)
+      j = last_not_above(self%from, angle)
       if (j == 0) return
       associate (e => self%elements(j))
          if (angle > e%to .or. .not. e%half > 0.0_wp) return
