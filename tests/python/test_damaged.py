@@ -81,7 +81,7 @@ def test_commands_on_damaged_results(seed, whole, tmp_path):
         for name in chosen.sample(names, 2):
             path = tmp_path / f"damaged{number}.h5"
             damage(whole, path, name, how)
-            for command in (["info", path], chosen.choice((["compare", path, whole], ["compare", whole, path]))):
+            for command in [["info", path], *([["compare", path, whole]] if chosen.random() < 0.2 else [])]:
                 code, errors = answer(command)
                 assert "Traceback" not in errors and code in (0, 2), (name, how, errors)
                 assert (code == 0) == (errors == "") or code == 0, (name, how, errors)
