@@ -118,7 +118,7 @@ def test_a_case_is_printed_though_others_cannot_be_used(tmp_path):
         (("values=0.3, 0.7", "values=0.3, -0.7"), 2, "&friction mu=-0.7: must be a number at least 0"),
         (("'goodman', 'none'", "'gudman', 'none'"), 4, "&scene coupling='gudman': must be 'full', 'goodman' or 'none'"),
         (("base='base.nml'", "base='bass.nml'"), 1, "&sweep base='bass.nml': bass.nml cannot be read: No such file or directory"),
-        (("base='base.nml'", "base=''"), 1, "&sweep base='': empty file name"),
+        (("base='base.nml'", "base=''"), 1, "&sweep base='': must not be empty"),
         (("base='base.nml', ", ""), 1, "&sweep: needs base"),
         (("&vary key='friction", "&very key='friction"), 2, "&very: unknown group; did you mean &vary?"),
         (("spacing='log'", "spacing='logg'"), 3, "&vary 2 spacing='logg': must be 'linear' or 'log'"),
