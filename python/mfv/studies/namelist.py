@@ -204,8 +204,6 @@ class _Reader:
         """A base case, which must be valid."""
         path = Path(self.source).parent / name
         try:
-            if not name:
-                raise input_error("empty file name")
             base = Base(text_of_file(path), name, folder=str(path.parent))
             check(base, list(whole_paths(base).items()))
             return base
