@@ -5,11 +5,12 @@ module mfv_validity
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
    use mfv_kinds, only: pi, wp
+   use mfv_load_extremes, only: most_rows
    use mfv_motions, only: motion_approach, motion_shift, motion_rotation, control_displacement
    use mfv_node_status, only: in_contact
    use mfv_resolution, only: find_unresolved, poorest_patch, unresolved_type
    use mfv_scene, only: scene_type
-   use mfv_simulation, only: mark_yield, simulation_type
+   use mfv_simulation, only: mark_of, mark_yield, simulation_type
    use mfv_state_interior, only: find_largest_von_mises
    use mfv_stress_search, only: largest_type
    use mfv_strings, only: add_text, string_type, to_text
@@ -261,30 +262,41 @@ contains
                        'columns must have all normal components first, then all tangential ones')
    end subroutine check_order
 
-   !> The state of the load history, at the ends of its load segments, with the largest von Mises stress.
+   !> The largest von Mises stress of the load history, at the ends of its load segments, in the states where it may be.
    subroutine check_yield(simulation, upper, body, warnings)
       type(simulation_type), intent(in) :: simulation
       logical, intent(in) :: upper
       type(body_type), intent(in) :: body
       type(string_type), allocatable, intent(inout) :: warnings(:)
-      type(largest_type) :: largest
+      type(largest_type) :: largest, other
       logical :: available
+      integer :: i, last, mark
 
       if (.not. body%yield_strength > 0.0_wp) return
-      associate (mark => simulation%marks(mark_yield + merge(2, 1, upper)))
-         if (mark%step == 0) return
-         call find_largest_von_mises(simulation%contact%model, simulation%padded(mark), upper, largest, available)
+      last = 0
+      do i = 1, most_rows
+         mark = mark_of(mark_yield, merge(2, 1, upper), i)
+         if (simulation%marks(mark)%step == 0) cycle
+         call find_largest_von_mises(simulation%contact%model, simulation%padded(simulation%marks(mark)), upper, other, available)
          if (.not. available) return
-         if (.not. ieee_is_finite(largest%value)) then
-            call add_text(warnings, 'the '//merge('upper', 'lower', upper)//' body yields under any load: its stresses are '// &
-                          'unbounded at a sharp corner; they are bounded with rounded edges')
-         else if (largest%value > body%yield_strength) then
+         if (last > 0 .and. other%value <= largest%value) cycle
+         largest = other
+         last = mark
+         if (.not. ieee_is_finite(largest%value)) exit
+      end do
+      if (last == 0) return
+      if (.not. ieee_is_finite(largest%value)) then
+         call add_text(warnings, 'the '//merge('upper', 'lower', upper)//' body yields under any load: its stresses are '// &
+                       'unbounded at a sharp corner; they are bounded with rounded edges')
+      else if (largest%value > body%yield_strength) then
+         associate (where_it_is => simulation%marks(last))
             call add_text(warnings, 'the largest von Mises stress of the '//merge('upper', 'lower', upper)//' body, '// &
-                          to_text(largest%value, 4)//' '//trim(place_in_history(simulation, mark%step, mark%reversal))// &
+                          to_text(largest%value, 4)//' '// &
+                          trim(place_in_history(simulation, where_it_is%step, where_it_is%reversal))// &
                           ', exceeds its yield_strength '//to_text(body%yield_strength)// &
                           ': stresses and tractions are not valid beyond yield')
-         end if
-      end associate
+         end associate
+      end if
    end subroutine check_yield
 
    !> The end of a load segment in words; padded with blanks.

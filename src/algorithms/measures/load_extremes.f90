@@ -6,6 +6,7 @@
 !> is -p + 2/pi integral of tau/(t - x) dt (Johnson 1985, eq. 2.23). At an edge of the contact tau vanishes as a root: in each
 !> interval it is taken as proportional to root((t - l)(r - t)), between the edges l and r, whose integrals are elementary.
 module mfv_load_extremes
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use mfv_body, only: body_type
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
@@ -18,6 +19,7 @@ module mfv_load_extremes
    implicit none
    private
    public :: extreme_type, load_extremes_type, slip_range_type, candidate_count, candidate_tension, candidate_von_mises, &
+             most_rows, add_estimate, &
              over_steps, over_cycle, over_rows
 
    !> Stretches: steps without cycles, a cycle, rows of &history.
@@ -25,6 +27,10 @@ module mfv_load_extremes
 
    !> Stresses that need a search, of the lower and the upper body.
    integer, parameter :: candidate_tension(2) = [1, 2], candidate_von_mises(2) = [3, 4], candidate_count = 4
+   !> Most rows of each, those with the largest estimates, in which they are searched for; and in all.
+   integer, parameter :: rows_of(candidate_count) = [8, 8, 3, 3], most_rows = 8
+   !> Estimates that differ by less, relative to their values, are of the same state.
+   real(wp), parameter :: same = 1.0e-6_wp
    !> Extremes that differ by less, relative to their values, are equal: the first row counts.
    real(wp), parameter :: round_off = 1.0e-9_wp
 
@@ -44,9 +50,9 @@ module mfv_load_extremes
       type(extreme_type) :: pressure, shear, lowest_stick, highest_stick, slip_range
       !> Largest tension along the surface of each body, and von Mises stress in it, where searched for.
       type(extreme_type) :: searched(candidate_count)
-      !> Rows that may have these, and the estimates in them, force/length^2.
-      integer :: row(candidate_count) = 0
-      real(wp) :: estimate(candidate_count) = 0.0_wp
+      !> Rows that may have these, 0 for none, and the estimates in them, force/length^2.
+      integer :: row(most_rows, candidate_count) = 0
+      real(wp) :: estimate(most_rows, candidate_count) = -1.0_wp
    contains
       procedure :: add_state
       procedure :: is_repeated
@@ -68,29 +74,33 @@ module mfv_load_extremes
 
 contains
 
-   !> Take a larger value. `row`, `x`: where it is.
-   pure subroutine raise(self, value, row, x)
+   !> Take a larger value, or NaN for an unbounded one. `row`, `x`, `y`: where it is. Of equal ones the first row counts.
+   pure subroutine raise(self, value, row, x, y)
       class(extreme_type), intent(inout) :: self
       real(wp), intent(in) :: value
       integer, intent(in) :: row
-      real(wp), intent(in), optional :: x
+      real(wp), intent(in), optional :: x, y
 
-      if (self%row > 0 .and. .not. value > self%value + round_off*abs(self%value)) return
+      if (self%row > 0) then
+         if (value <= self%value - round_off*abs(self%value) .or. ieee_is_nan(self%value)) return
+         if (value <= self%value + round_off*abs(self%value) .and. row > self%row) return
+      end if
       self%value = value
       self%row = row
       if (present(x)) self%x = x
+      if (present(y)) self%y = y
    end subroutine raise
 
    !> Add the state at the end of a load segment. `slip`: of the stretch so far. `friction`: whether friction acts in the segment.
-   !> `is_larger`: which of the estimates it raises, shape (candidate_count).
-   subroutine add_state(self, model, state, slip, row, friction, is_larger)
+   !> `place`: where it is among the rows of each stress, 0 if it is not; shape (candidate_count).
+   subroutine add_state(self, model, state, slip, row, friction, place)
       class(load_extremes_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       type(slip_range_type), intent(inout) :: slip
       integer, intent(in) :: row
       logical, intent(in) :: friction
-      logical, intent(out) :: is_larger(:)
+      integer, intent(out) :: place(:)
       type(patch_type), allocatable :: patches(:)
       type(zone_edges_type) :: edges
       real(wp) :: shear, estimates(candidate_count), arc
@@ -114,12 +124,25 @@ contains
          call lower(self%lowest_stick, edges%stick_ratio(), row)
       end if
       call estimate_stresses(model, state, patches, estimates)
-      is_larger = estimates >= 0.0_wp .and. (self%row == 0 .or. estimates > (1.0_wp + round_off)*self%estimate)
-      where (is_larger)
-         self%estimate = estimates
-         self%row = row
-      end where
+      do i = 1, candidate_count
+         call add_estimate(self%estimate(:rows_of(i), i), estimates(i), place(i))
+         if (place(i) > 0) self%row(place(i), i) = row
+      end do
    end subroutine add_state
+
+   !> Put an estimate among the largest ones, in place of the smallest; negative: none. `place`: where, 0 if it is not among them or
+   !> equal to one.
+   pure subroutine add_estimate(largest, estimate, place)
+      real(wp), intent(inout) :: largest(:)
+      real(wp), intent(in) :: estimate
+      integer, intent(out) :: place
+
+      place = 0
+      if (.not. estimate >= 0.0_wp .or. any(largest >= 0.0_wp .and. abs(largest - estimate) <= same*estimate)) return
+      if (.not. estimate > minval(largest)) return
+      place = minloc(largest, dim=1)
+      largest(place) = estimate
+   end subroutine add_estimate
 
    !> x of the largest value at the nodes: the middle of neighbouring nodes with the same value.
    pure real(wp) function place_of_largest(x, values) result(place)
@@ -141,9 +164,9 @@ contains
       type(load_extremes_type), intent(in) :: other
       integer, intent(in) :: candidate
 
-      associate (here => self%estimate(candidate), there => other%estimate(candidate))
-         is_repeated = self%step == other%step .and. self%row(candidate) == other%row(candidate) .and. &
-                       abs(here - there) <= round_off*abs(there)
+      associate (here => self%estimate(:, candidate), there => other%estimate(:, candidate))
+         is_repeated = self%step == other%step .and. all(self%row(:, candidate) == other%row(:, candidate) .and. &
+                                                         abs(here - there) <= round_off*abs(there))
       end associate
    end function is_repeated
 

@@ -13,7 +13,8 @@ module mfv_simulation
    use mfv_conventional, only: apply_conventionally
    use mfv_error_bar, only: error_estimate_type
    use mfv_kinds, only: wp
-   use mfv_load_extremes, only: candidate_count, candidate_tension, candidate_von_mises, load_extremes_type, over_cycle, &
+   use mfv_load_extremes, only: add_estimate, candidate_count, candidate_tension, candidate_von_mises, load_extremes_type, &
+                                most_rows, over_cycle, &
                                 over_rows, over_steps, slip_range_type
    use mfv_leap, only: apply_by_large_increments
    use mfv_load_way, only: load_summary_type
@@ -34,7 +35,7 @@ module mfv_simulation
    public :: simulation_type, position_type, restart_type, new_simulation, snapshot_type, sensitivity_type, history_events, &
              history_steps, history_none
    public :: states_reversals, states_steps, states_none, states_last_cycle
-   public :: mark_loading, mark_reversal, mark_return, mark_cycle_start, mark_yield, mark_count
+   public :: mark_loading, mark_reversal, mark_return, mark_cycle_start, mark_yield, mark_of, mark_count
 
    !> Records of the load history, in the order of the key &output history: one for every event, one for every step end, none.
    integer, parameter :: history_events = 1, history_steps = 2, history_none = 3
@@ -45,10 +46,14 @@ module mfv_simulation
    !> States stored for the last step with cycles: the start of the step, the reversal of its last complete cycle, the end of that
    !> cycle (with `reversal` 0 before the first: the start of the step), and its start.
    integer, parameter :: mark_loading = 1, mark_reversal = 2, mark_return = 3, mark_cycle_start = 4
-   !> The reversal of the incomplete cycle; and, with the number of a stress or body added, the states of the present stretch whose
-   !> stresses are estimated to be the largest (candidate_tension and so on); those of the last complete cycle, and of the whole
-   !> load history, for the von Mises stress of a body. And the number of marks.
-   integer, parameter :: mark_pending = 5, mark_candidate = 5, mark_last_cycle = 9, mark_yield = 11, mark_count = 13
+   !> The reversal of the incomplete cycle. From the next ones on, most_rows for each (mark_of): the states of the present stretch
+   !> that may have the largest stresses (candidate_tension and so on); those of the last complete cycle, and of the whole load
+   !> history, for the von Mises stress of each body. And the number of marks.
+   integer, parameter :: mark_pending = 5, mark_candidate = mark_pending + 1
+   integer, parameter :: mark_last_cycle = mark_candidate + most_rows*candidate_count
+   integer, parameter :: mark_yield = mark_last_cycle + 2*most_rows, mark_count = mark_yield + 2*most_rows - 1
+   !> Rows in which the largest von Mises stress of the whole load history is searched for.
+   integer, parameter :: rows_of_yield = 3
 
    !> The state at the end of a step, or of one reversal of a step with cycles.
    type :: snapshot_type
@@ -77,8 +82,8 @@ module mfv_simulation
       !> Extremes and slip of the present stretch: since the start of a cycle, the first row of &history, or the start.
       type(load_extremes_type) :: extremes
       type(slip_range_type) :: slip_range
-      !> Estimates of the largest von Mises stress of both bodies at mark_yield, force/length^2.
-      real(wp) :: yield_estimate(2) = -1.0_wp
+      !> Estimates of the largest von Mises stress of both bodies in the states of mark_yield, force/length^2.
+      real(wp) :: yield_estimate(rows_of_yield, 2) = -1.0_wp
       !> Summary of the steps taken, the last one possibly incomplete.
       type(load_summary_type) :: load_summary
       !> The present controls and loads.
@@ -610,7 +615,7 @@ contains
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
       integer :: i, turn
-      logical :: is_larger(candidate_count)
+      integer :: place(candidate_count), yield_place
 
       turn = 1 + mod(self%leg%number - 1, step%turns())
       if (merge(turn, 0, step%cycles > 0) == 1 .or. (step%row == 1 .and. self%leg%number == 1)) then
@@ -623,15 +628,15 @@ contains
          if (extremes%stretch == over_rows) i = step%row + turn - 1
          if (extremes%stretch == over_steps) i = self%steps_done + 1
          if (allocated(self%stress_at) .and. self%keep_history /= history_none) call record_surface(contact, self%stress_at)
-         call extremes%add_state(contact%model, contact%state, self%slip_range, i, step%friction, is_larger)
+         call extremes%add_state(contact%model, contact%state, self%slip_range, i, step%friction, place)
          do i = 1, candidate_count
-            if (is_larger(i)) call set_mark(self, mark_candidate + i, self%leg%number)
+            if (place(i) > 0) call set_mark(self, mark_of(mark_candidate, i, place(i)), self%leg%number)
          end do
          do i = 1, size(candidate_von_mises)
             associate (candidate => candidate_von_mises(i))
-               if (.not. is_larger(candidate) .or. .not. extremes%estimate(candidate) > self%yield_estimate(i)) cycle
-               self%yield_estimate(i) = extremes%estimate(candidate)
-               self%marks(mark_yield + i) = self%marks(mark_candidate + candidate)
+               if (place(candidate) == 0) cycle
+               call add_estimate(self%yield_estimate(:, i), extremes%estimate(place(candidate), candidate), yield_place)
+               if (yield_place > 0) call set_mark(self, mark_of(mark_yield, i, yield_place), self%leg%number)
             end associate
          end do
       end associate
@@ -660,7 +665,7 @@ contains
    subroutine complete_extremes(self, cycle)
       class(simulation_type), intent(inout) :: self
       type(cycle_type), intent(inout) :: cycle
-      integer :: i, candidate
+      integer :: i, j, candidate
 
       cycle%extremes = self%extremes
       do i = 1, size(candidate_tension)
@@ -671,37 +676,58 @@ contains
                if (self%extremes%is_repeated(before, candidate)) cycle
             end associate
          end if
-         call search(self, mark_candidate, candidate, cycle%extremes)
+         call search(self, mark_of(mark_candidate, candidate, 1), candidate, cycle%extremes)
       end do
       do i = 1, size(candidate_von_mises)
-         self%marks(mark_last_cycle + i) = self%marks(mark_candidate + candidate_von_mises(i))
+         do j = 1, count(cycle%extremes%row(:, candidate_von_mises(i)) > 0)
+            self%marks(mark_of(mark_last_cycle, i, j)) = self%marks(mark_of(mark_candidate, candidate_von_mises(i), j))
+         end do
       end do
    end subroutine complete_extremes
 
-   !> Search for a largest stress in the state of its mark; none where no state has it.
-   subroutine search(self, mark, candidate, extremes)
-      class(simulation_type), intent(in) :: self
-      integer, intent(in) :: mark, candidate
-      type(load_extremes_type), intent(inout) :: extremes
-      type(contact_state_type) :: state
-      type(largest_type) :: largest
-      logical :: available
+   !> The mark of a row: `first` is that of the first row of the first stress, `number` that of the stress.
+   pure integer function mark_of(first, number, row) result(mark)
+      integer, intent(in) :: first, number, row
 
-      associate (found => extremes%searched(candidate))
+      mark = first + (number - 1)*most_rows + row - 1
+   end function mark_of
+
+   !> Search for a largest stress in the states of its marks from `first` on, the most promising ones first; none where no state has
+   !> it.
+   subroutine search(self, first, candidate, extremes)
+      class(simulation_type), intent(in) :: self
+      integer, intent(in) :: first, candidate
+      type(load_extremes_type), intent(inout) :: extremes
+      type(largest_type) :: largest
+      logical :: available, is_left(most_rows)
+      !> An estimate is not smaller than this part of a stress that is among the largest.
+      real(wp), parameter :: least = 0.85_wp
+      integer :: i, number
+
+      associate (found => extremes%searched(candidate), estimates => extremes%estimate(:, candidate))
          found%row = 0
-         if (extremes%row(candidate) == 0) return
-         state = self%padded(self%marks(mark + candidate))
+         is_left = extremes%row(:, candidate) > 0
+         do number = 1, count(is_left)
+            i = maxloc(estimates, dim=1, mask=is_left)
+            is_left(i) = .false.
+            if (found%row > 0 .and. estimates(i) < least*found%value) exit
+            call find_largest(self%padded(self%marks(first + i - 1)))
+            if (.not. available) exit
+            call found%raise(largest%value, extremes%row(i, candidate), largest%x, largest%y)
+         end do
+      end associate
+
+   contains
+
+      subroutine find_largest(state)
+         type(contact_state_type), intent(in) :: state
+
          if (any(candidate == candidate_tension)) then
             call find_largest_tension(self%contact%model, state, candidate == candidate_tension(2), largest, available)
          else
             call find_largest_von_mises(self%contact%model, state, candidate == candidate_von_mises(2), largest, available)
          end if
-         if (.not. available) return
-         found%value = largest%value
-         found%x = largest%x
-         found%y = largest%y
-         found%row = extremes%row(candidate)
-      end associate
+      end subroutine find_largest
    end subroutine search
 
    !> Whether the extremes are those of the last complete cycle.
@@ -726,21 +752,20 @@ contains
       class(simulation_type), intent(in) :: self
       logical, intent(in) :: von_mises
       type(load_extremes_type), intent(out) :: extremes
-      integer :: i, mark
+      integer :: i
 
       extremes = self%extremes
-      mark = mark_candidate
       if (ends_with_cycle(self)) then
          extremes = self%cycles(self%cycle_count)%extremes
-         mark = mark_last_cycle - candidate_von_mises(1) + 1
       else
          do i = 1, size(candidate_tension)
-            call search(self, mark, candidate_tension(i), extremes)
+            call search(self, mark_of(mark_candidate, candidate_tension(i), 1), candidate_tension(i), extremes)
          end do
       end if
       if (.not. von_mises) return
       do i = 1, size(candidate_von_mises)
-         call search(self, mark, candidate_von_mises(i), extremes)
+         call search(self, merge(mark_of(mark_last_cycle, i, 1), mark_of(mark_candidate, candidate_von_mises(i), 1), &
+                                 ends_with_cycle(self)), candidate_von_mises(i), extremes)
       end do
    end subroutine find_extremes
 

@@ -233,7 +233,10 @@ contains
       list = transfer(simulation%extremes, [0])
       call self%exchange('extremes', list, internal)
       simulation%extremes = transfer(list, simulation%extremes)
-      call self%exchange('yield_estimate', simulation%yield_estimate, 'estimates of the largest von Mises stresses so far')
+      do length = 1, size(simulation%yield_estimate, 2)
+         call self%exchange('yield_estimate_'//to_text(length), simulation%yield_estimate(:, length), &
+                            'estimates of the largest von Mises stresses so far')
+      end do
       list = transfer(simulation%leg%cycle, [0])
       length = size(list)
       call self%exchange('cycle_under_way', list, internal)

@@ -146,17 +146,18 @@ contains
       if (words /= '') call add_line(text, 'tension at the end', words(3:))
    end subroutine add_tension
 
-   !> Extremes over the last cycle, the rows of &history or the steps; of steps only if they are not all at the end.
+   !> Extremes over the last cycle, the rows of &history or the steps; of steps only if they exceed the values at the
+   !> end.
    subroutine add_extremes(text, fields, simulation)
       character(:), allocatable, intent(inout) :: text
       type(field_type), intent(in) :: fields(:)
       type(simulation_type), intent(in) :: simulation
+      character(*), parameter :: names(4) = [character(13) :: 'lower_tension', 'upper_tension', 'pressure', 'shear']
       character(:), allocatable :: over
       integer :: i
 
       if (simulation%stretch() == over_steps) then
-         if (all([(index(fields(i)%name, '_row') == 0 .or. index(fields(i)%name, 'stick_ratio') > 0 .or. is_at_end(fields(i)), &
-                   i=1, size(fields))])) return
+         if (.not. any([(is_above_end(trim(names(i))), i=1, size(names))])) return
       end if
       over = 'over all steps: '
       if (simulation%stretch() == over_rows) over = 'over all rows: '
@@ -169,12 +170,17 @@ contains
 
    contains
 
-      !> Whether an extreme occurs in the last step.
-      pure logical function is_at_end(field)
-         type(field_type), intent(in) :: field
+      !> Whether the largest value exceeds the one at the end by more than a rounding error.
+      pure logical function is_above_end(name)
+         character(*), intent(in) :: name
+         real(wp), parameter :: round_off = 1.0e-6_wp
+         integer :: largest, last
 
-         is_at_end = nint(field%values(1)) == simulation%steps_done
-      end function is_at_end
+         largest = field_named(fields, 'largest_'//name)
+         last = max(field_named(fields, name), field_named(fields, 'peak_'//name))
+         is_above_end = largest > 0 .and. last > 0
+         if (is_above_end) is_above_end = fields(largest)%values(1) > (1.0_wp + round_off)*fields(last)%values(1)
+      end function is_above_end
 
       !> A line with one or two extremes, where they exist.
       subroutine add(label, first, name_of_first, second, name_of_second)
