@@ -7,7 +7,7 @@ module mfv_refinement
    use mfv_kinds, only: wp
    use mfv_observer, only: observer_type, relay_type
    use mfv_reference_indenter, only: indenter_type
-   use mfv_scene, only: scene_type
+   use mfv_scene, only: scene_type, solver_auto
    use mfv_scene_indenter, only: indenter_of
    use mfv_simulation, only: history_none, new_simulation, simulation_type, states_reversals
    use mfv_status, only: MFV_INTERRUPTED, MFV_MESH_EXCEEDED
@@ -48,7 +48,7 @@ contains
       type(edges_type) :: edges, first
       real(wp), allocatable :: ends(:)
       real(wp) :: extra
-      integer :: nodes, pass
+      integer :: nodes, pass, outcome
       logical :: exceeded, is_last
 
       interrupted = .false.
@@ -58,6 +58,8 @@ contains
       watch%runs = passes
       trial = scene_on_mesh(scene, max(nint(coarse_part*nodes), fewest_coarse))
       trial%steps%cycles = min(trial%steps%cycles, most_cycles)
+      ! The mesh is that of the scene, whatever its solver.
+      trial%method%linear_solver = solver_auto
       extra = room
       do pass = 1, most_passes
          watch%before = min(pass, passes) - 1
@@ -69,8 +71,12 @@ contains
          if (.not. edges%left < edges%right) return
          if (pass == 1) then
             first = edges
-         else
+            outcome = coarse%outcome
+         else if (coarse%outcome == outcome) then
             call take_contact(first, edges)
+         else
+            ! It ended before the contact reached its size.
+            edges = first
          end if
          call add_tip(scene, edges)
          ! The contact may jump to the next asperity, or become wider on the finer mesh.
