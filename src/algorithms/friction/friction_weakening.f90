@@ -70,10 +70,6 @@ contains
          return
       end if
       direction = slip_sign(status)
-      if (direction*(after%slip - before%slip) >= room(self, before)) then
-         row%slope = -direction*before%kinetic
-         return
-      end if
       fall = slope_of_coefficient(self, before)
       row%slope = -direction*(coefficient(self, before) - fall*direction*(after%slip - before%slip))
       row%stiffness = after%pressure*fall
