@@ -9,7 +9,7 @@ module mfv_refinement
    use mfv_observer, only: observer_type, relay_type
    use mfv_reference_indenter, only: indenter_type
    use mfv_resolution, only: poorest_patch
-   use mfv_scene, only: control_displacement, control_force, most_by_points, scene_type, step_type
+   use mfv_scene, only: control_displacement, control_force, most_by_points, scene_type, solver_auto, step_type
    use mfv_scene_indenter, only: indenter_of
    use mfv_simulation, only: history_none, new_simulation, simulation_type, states_reversals
    use mfv_status, only: MFV_COMPLETE, MFV_INTERRUPTED, MFV_MESH_EXCEEDED
@@ -50,7 +50,7 @@ contains
       type(edges_type) :: edges, first
       real(wp), allocatable :: ends(:)
       real(wp) :: extra
-      integer :: nodes, pass
+      integer :: nodes, pass, outcome
       logical :: exceeded, is_last
 
       interrupted = .false.
@@ -60,6 +60,8 @@ contains
       watch%runs = passes
       trial = scene_on_mesh(scene, max(nint(coarse_part*nodes), fewest_coarse))
       trial%steps%cycles = min(trial%steps%cycles, most_cycles)
+      ! The mesh is that of the scene, whatever its solver.
+      trial%method%linear_solver = solver_auto
       extra = room
       do pass = 1, most_passes
          watch%before = min(pass, passes) - 1
@@ -71,8 +73,12 @@ contains
          if (.not. edges%left < edges%right) return
          if (pass == 1) then
             first = edges
-         else
+            outcome = coarse%outcome
+         else if (coarse%outcome == outcome) then
             call take_contact(first, edges)
+         else
+            ! It ended before the contact reached its size.
+            edges = first
          end if
          call add_tip(scene, edges)
          ! The contact may jump to the next asperity, or become wider on the finer mesh.

@@ -117,10 +117,12 @@ contains
       if (self%large_increments > 0) call self%find_applicable(model)
    end subroutine check_increment
 
-   !> Record the jump of the tractions at an unchanged load.
-   subroutine note_jump(self, before, after)
+   !> Record the jump of the tractions at an unchanged load, relative to `scale`, force/length^2: the largest traction so far or,
+   !> where contact begins at next to no load, to come.
+   subroutine note_jump(self, before, after, scale)
       class(certificate_type), intent(inout) :: self
       type(contact_fields_type), intent(in) :: before, after
+      real(wp), intent(in) :: scale
       real(wp) :: jump
       integer :: i
 
@@ -129,7 +131,7 @@ contains
          jump = largest_or_nan(jump, after%pressure(i) - before%pressure(i))
          jump = largest_or_nan(jump, after%shear(i) - before%shear(i))
       end do
-      if (self%traction_scale > 0.0_wp) call note(self, continuity, jump, self%traction_scale)
+      if (self%traction_scale > 0.0_wp) call note(self, continuity, jump, scale)
    end subroutine note_jump
 
    !> Record the estimated errors of an interval of large increments: of the tractions at its end, force/length^2, and of the

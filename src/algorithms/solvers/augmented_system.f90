@@ -7,7 +7,9 @@
 !> moment are added (eq. 4.24); w and s then include its effect.
 !>
 !> The unknowns are scaled by the modulus of the compliance and the length of the mesh, so that units do not matter; shear also by
-!> a small mu. One factorisation serves two right-hand sides: the state and its rates.
+!> a small mu. One factorisation serves two right-hand sides, the state and its rates, and their iterative refinement: each row is
+!> then satisfied up to round-off of its own terms (Skeel, Math. Comp. 35, 1980), also the balance of forces that are tiny beside
+!> the units, as where contact begins at a single node.
 module mfv_augmented_system
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_compliance, only: block_up, block_ut, block_wp, block_wt, compliance_type
@@ -15,7 +17,7 @@ module mfv_augmented_system
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_system
    use mfv_kinds, only: wp
-   use mfv_lapack, only: dgesv
+   use mfv_lapack, only: dgesv, dgetrs
    use mfv_motions, only: motion_count, motion_approach, motion_shift, motion_rotation, control_force
    use mfv_node_status
    implicit none
@@ -58,8 +60,7 @@ contains
       logical, intent(out) :: singular
       type(assembly_type) :: assembly
       type(prescribed_type) :: state, rate
-      integer, allocatable :: pivots(:)
-      integer :: i, info, n
+      integer :: i
 
       call find_prescribed(constraints, model, .false., state)
       call find_prescribed(constraints, model, .true., rate)
@@ -72,16 +73,31 @@ contains
       if (assembly%tangential) call add_tangential_constraints(assembly, constraints, state, rate)
       call add_loads(assembly, constraints%load)
 
-      n = size(assembly%matrix, 1)
-      allocate (pivots(n))
-      call dgesv(n, 2, assembly%matrix, n, pivots, assembly%right, n, info)
       self%solves = self%solves + 1
-      singular = info /= 0
-      if (.not. singular) singular = .not. all(ieee_is_finite(assembly%right))
+      call solve_and_refine(assembly%matrix, assembly%right, singular)
       if (singular) return
       response%state = extracted(assembly, model, constraints%status, state%load, assembly%right(:, 1))
       response%rate = extracted(assembly, model, constraints%status, rate%load, assembly%right(:, 2))
    end subroutine solve
+
+   !> Solve a system for two right-hand sides, which become the solutions; `matrix` becomes its factors. `singular`: no solution.
+   subroutine solve_and_refine(matrix, right, singular)
+      real(wp), intent(inout) :: matrix(:, :), right(:, :)
+      logical, intent(out) :: singular
+      real(wp), allocatable :: original(:, :), residual(:, :)
+      integer :: info, n, pivots(size(matrix, 1))
+
+      n = size(matrix, 1)
+      original = matrix
+      residual = right
+      call dgesv(n, 2, matrix, n, pivots, right, n, info)
+      singular = info /= 0
+      if (.not. singular) singular = .not. all(ieee_is_finite(right))
+      if (singular) return
+      residual = residual - matmul(original, right)
+      call dgetrs('N', n, 2, matrix, n, pivots, residual, n, info)
+      right = right + residual
+   end subroutine solve_and_refine
 
    !> An empty assembly for the nodes in contact and their neighbours.
    type(assembly_type) function new_assembly(model, status) result(assembly)
@@ -261,15 +277,13 @@ contains
          assembly%matrix(assembly%force(motion_shift), assembly%motion(motion_rotation)) = -assembly%height/assembly%length
    end subroutine add_loads
 
-   !> Fields from a scaled solution. `load`: prescribed loads. Displacements that are not unknowns are computed with the
-   !> compliance.
+   !> Fields from a scaled solution. `load`: prescribed loads. All displacements are those of the tractions: the unknowns w - delta
+   !> and s have the round-off of the motions, which can be larger than the displacements of a contact that begins.
    type(contact_fields_type) function extracted(assembly, model, status, load, solution) result(fields)
       type(assembly_type), intent(in) :: assembly
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: status(:)
       real(wp), intent(in) :: load(motion_count), solution(:)
-      real(wp), dimension(size(status)) :: normal, tangential
-      logical :: included(size(status))
       integer :: i, m
 
       m = size(assembly%nodes)
@@ -279,26 +293,20 @@ contains
          fields%motion(i) = assembly%motion_unit(i)*solution(assembly%motion(i))
          fields%force(i) = assembly%force_unit(i)*solution(assembly%force(i))
       end do
-      associate (length => assembly%length, nodes => assembly%nodes)
+      associate (nodes => assembly%nodes)
          fields%pressure(nodes) = assembly%stress*solution(assembly%pressure + 1:assembly%pressure + m)
-         fields%normal(nodes) = length*solution(assembly%normal + 1:assembly%normal + m) + fields%motion(motion_approach)
          where (.not. in_contact(status)) fields%pressure = 0.0_wp
          if (assembly%tangential) then
             fields%motion(motion_shift) = fields%motion(motion_shift) - assembly%height*fields%motion(motion_rotation)
             fields%shear(nodes) = assembly%shear_stress*solution(assembly%shear + 1:assembly%shear + m)
-            fields%tangential(nodes) = length*solution(assembly%slip + 1:assembly%slip + m) + fields%motion(motion_shift)
             where (.not. in_contact(status)) fields%shear = 0.0_wp
          else
             ! Inclined normals give a tangential resultant even without friction.
             fields%motion(motion_shift) = load(motion_shift)
             fields%force(motion_shift) = model%resultant(motion_shift, fields%pressure, fields%shear)
          end if
-         call model%relative_displacements(fields, normal, tangential)
-         included = .false.
-         included(nodes) = .true.
-         where (.not. included) fields%normal = normal
-         where (.not. (included .and. assembly%tangential)) fields%tangential = tangential
       end associate
+      call model%displace(fields)
    end function extracted
 
 end module mfv_augmented_system

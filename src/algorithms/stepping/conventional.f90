@@ -4,13 +4,15 @@
 !> repaired at a time, the worst violation of the first of these types: interpenetration, negative pressure, shear beyond the
 !> friction limit, slip in the wrong direction (not listed in the figure, but in Table 2.1). The augmented system is solved again
 !> after every repair. Neither termination nor the correct state is guaranteed: a repeated set of statuses means cycling, and too
-!> many repairs mean that no admissible state was found.
+!> many repairs, or a repaired state whose certificate fails, mean that no admissible state was found.
 module mfv_conventional
+   use mfv_certificate, only: residual_descriptions
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path
    use mfv_contact_system
    use mfv_error, only: error_type
    use mfv_event_search, only: status_after
+   use mfv_first_violation, only: most_residual
    use mfv_friction_law, only: memory_size
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_approach, motion_shift, control_force, control_displacement
@@ -106,7 +108,7 @@ contains
             expected = response%state
             cycle
          else if (repair%kind == event_none) then
-            call accept(path, segment, response%state, iteration)
+            call accept(path, segment, response%state, iteration, error)
             return
          end if
          tried = reshape([tried, path%state%status], [n, size(tried, 2) + 1])
@@ -277,16 +279,28 @@ contains
                                            path%holding(real(-motion_sign(path%state%status), wp))))
    end subroutine apply_repair
 
-   !> No inequality is violated: accept the state, count and record.
-   subroutine accept(path, segment, fields, iteration)
+   !> No inequality is violated: accept the state, count and record. Error MFV_INADMISSIBLE: its certificate fails, since a friction
+   !> law is followed over a load step that is too long; `path` is then unchanged but for statuses.
+   subroutine accept(path, segment, fields, iteration, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       type(contact_fields_type), intent(in) :: fields
       type(iteration_type), intent(in) :: iteration
+      type(error_type), allocatable, intent(out) :: error
+      type(path_position_type) :: position
 
+      position = path%path_position_type
       call path%take_increment(fields, fields%slip() - path%state%fields%slip(), 0.0_wp)
       call path%remember_status(.not. slips(path%state%status))
-      call path%record_changes(segment, iteration)
+      associate (certificate => path%certificate)
+         if (certificate%largest() > most_residual(path)) &
+            call path%end_here(MFV_INADMISSIBLE, 'inadmissible: the repaired state is not a solution (certificate '// &
+                               to_text(certificate%largest(), 2)//': '// &
+                               trim(residual_descriptions(maxloc(certificate%residual, dim=1, mask=certificate%applies)))// &
+                               '); use a smaller load_step', error)
+      end associate
+      if (allocated(error)) path%path_position_type = position
+      if (.not. allocated(error)) call path%record_changes(segment, iteration)
    end subroutine accept
 
 end module mfv_conventional

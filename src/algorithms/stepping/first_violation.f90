@@ -229,7 +229,7 @@ contains
             call path%no_continuation('the tractions would have to jump', error)
             return
          end if
-         call path%certificate%note_jump(before, response%state)
+         call path%certificate%note_jump(before, response%state, scale)
          call response%state%move(increment%step, response%rate)
       end associate
       call path%take_increment(increment%response%state, increment%response%rate%slip(), merge(increment%step, 0.0_wp, relaxing))
