@@ -6,7 +6,7 @@ module mfv_observables
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
    use mfv_interior, only: interior_type
-   use mfv_kinds, only: pi, wp
+   use mfv_kinds, only: certified, pi, wp
    use mfv_motions, only: bulk_motions, motions, motion_count => user_motions, motion_approach, motion_shift
    use mfv_simulation, only: mark_loading, simulation_type
    use mfv_state_interior, only: state_interior
@@ -163,7 +163,8 @@ contains
 
       associate (model => simulation%contact%model, state => simulation%contact%state)
          ! Pressure only compresses a straight surface.
-         if (model%scene%can_have_bulk_stress(upper) .and. .not. any(abs(state%fields%shear) > 0.0_wp)) then
+         if (model%scene%can_have_bulk_stress(upper) .and. &
+             .not. maxval(abs(state%fields%shear)) > certified*maxval(state%fields%pressure)) then
             call put(values, name//'_tension', max(state%fields%motion(bulk_motions(merge(2, 1, upper))), 0.0_wp))
             return
          end if

@@ -3,6 +3,7 @@ module mfv_state_interior
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
+   use mfv_corners, only: corner_type, corners_of
    use mfv_interior, only: has_interior, interior_type
    use mfv_kinds, only: wp
    use mfv_motions, only: bulk_motions
@@ -23,6 +24,8 @@ contains
       logical, intent(out) :: available
       integer, intent(in), optional :: fewest_elements
       real(wp), dimension(model%nodes()) :: contact_edge, stick_edge
+      type(corner_type), allocatable :: corners(:)
+      integer :: i
 
       available = has_interior(model%scene%lower)
       if (upper) available = has_interior(model%scene%upper)
@@ -31,6 +34,11 @@ contains
       call model%scene%interior(upper, model%arc, model%width, state%fields%pressure, state%fields%shear, contact_edge, &
                                 stick_edge, state%fields%motion(bulk_motions(merge(2, 1, upper))), interior, &
                                 available, fewest_elements)
+      corners = corners_of(model, state)
+      allocate (interior%unresolved(2, size(corners)))
+      do i = 1, size(corners)
+         interior%unresolved(:, i) = corners(i)%place + corners(i)%reach*[-1.0_wp, 1.0_wp]
+      end do
    end subroutine state_interior
 
    !> Edges of contact and stick zones, arc lengths from the origin of x, at the first and last node of each zone; NaN
