@@ -6,7 +6,7 @@ module mfv_interior
    use mfv_body, only: body_type, shape_disk, shape_hole, shape_matrix
    use mfv_interior_circle, only: circle_load_type, longest_element, new_circle_load
    use mfv_interior_half_plane, only: half_plane_load_type, new_half_plane_load
-   use mfv_kinds, only: wp
+   use mfv_kinds, only: certified, wp
    use mfv_material, only: plane_strain
    use mfv_surface_tractions, only: find_traction_elements, traction_elements_type, zone_list_type
    implicit none
@@ -41,6 +41,8 @@ module mfv_interior
       real(wp) :: peak = 0.0_wp, length = 1.0_wp
       !> Bulk stress of a half-plane: a uniform sigma_xx, force/length^2.
       real(wp) :: bulk = 0.0_wp
+      !> Intervals about corners (mfv_corners) where tractions are not resolved, arc lengths, shape (2, corners).
+      real(wp), allocatable :: unresolved(:, :)
    contains
       procedure :: stress
       procedure :: all_stresses
@@ -57,6 +59,7 @@ module mfv_interior
       procedure :: knots
       procedure :: point_at
       procedure :: is_sheared
+      procedure :: is_unresolved
       procedure :: zone_edges
    end type interior_type
 
@@ -301,8 +304,17 @@ contains
    pure logical function is_sheared(self)
       class(interior_type), intent(in) :: self
 
-      is_sheared = any(abs(aimag(self%elements%first)) > 0.0_wp) .or. any(abs(aimag(self%elements%last)) > 0.0_wp)
+      is_sheared = any(max(abs(aimag(self%elements%first)), abs(aimag(self%elements%last))) > certified*self%peak)
    end function is_sheared
+
+   !> Whether the tractions at an arc length from the origin of x are not resolved.
+   pure logical function is_unresolved(self, arc)
+      class(interior_type), intent(in) :: self
+      real(wp), intent(in) :: arc
+
+      is_unresolved = .false.
+      if (allocated(self%unresolved)) is_unresolved = any(self%unresolved(1, :) < arc .and. arc < self%unresolved(2, :))
+   end function is_unresolved
 
    !> Edges of contact and stick zones, arc lengths from the origin of x, ascending, with equidistant points between them,
    !> about `most_between` in total.

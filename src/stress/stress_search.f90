@@ -2,7 +2,7 @@
 module mfv_stress_search
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
    use mfv_interior, only: interior_type, von_mises_stress
-   use mfv_kinds, only: pi, wp
+   use mfv_kinds, only: certified, pi, wp
    use mfv_minimum, only: minimum_near, objective_type
    use mfv_surface_tractions, only: merged
    implicit none
@@ -118,8 +118,9 @@ contains
    end function negative_von_mises
 
    !> Largest tension at the surface, force/length^2: at edges of contact and stick zones, where it has cusps, between them
-   !> and beside the contact (on a circle, everywhere). NaN where tractions are singular, at the end of a surface under shear;
-   !> `x` and `y` are NaN without any tension, and if the bulk stress is the largest.
+   !> and beside the contact (on a circle, everywhere), but not next to corners, where the pressure compresses the surface without
+   !> limit. NaN where tractions are singular, at the end of a surface under shear; `x` and `y` are NaN without any tension,
+   !> and if the bulk stress is the largest.
    type(largest_type) function largest_tension(interior) result(largest)
       type(interior_type), intent(in) :: interior
       real(wp) :: place, point(2), value
@@ -134,7 +135,7 @@ contains
          return
       end if
       call refine_on_surface(interior, candidates(interior), .false., place, value)
-      if (.not. value > largest%value) return
+      if (.not. value > largest%value + certified*interior%peak) return
       point = interior%point_at(place, 0.0_wp)
       largest = largest_type(value, point(1), point(2))
    end function largest_tension
@@ -194,6 +195,7 @@ contains
             stress_at = interior%surface_von_mises(arc)
          else
             stress_at = interior%surface_stress(arc)
+            if (interior%is_unresolved(arc)) stress_at = -huge(stress_at)
          end if
       end function stress_at
 

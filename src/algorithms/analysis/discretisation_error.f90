@@ -7,6 +7,7 @@ module mfv_discretisation_error
    use mfv_closed_form, only: alike
    use mfv_compliance, only: block_up, block_wt
    use mfv_contact_model, only: contact_model_type
+   use mfv_corners, only: corner_type, find_corner
    use mfv_error_bar
    use mfv_friction, only: friction_coefficient_type
    use mfv_kinds, only: pi, wp
@@ -84,37 +85,32 @@ contains
             else
                estimate%bar(quantity) = unresolved_bar(values(quantity, :))
             end if
+            if (peak_is_at_corner(simulation, quantity)) estimate%bar(quantity) = logarithmic_bar(values(quantity, :))
          end do
-         if (peak_is_at_corner(simulation)) &
-            estimate%bar(quantity_peak_pressure) = logarithmic_bar(values(quantity_peak_pressure, :))
       end if
       simulation%estimate = estimate
    end subroutine estimate_error
 
-   !> Whether the peak pressure is at a convex corner of the surfaces, where it grows by (m J/pi) ln 2 whenever intervals are
-   !> halved; J: jump of the slope, m = scene%modulus() (wedge: Johnson 1985, section 5.2). How the peak changes from mesh to mesh
-   !> depends more on where the corner lies between nodes. Corners nearer to each other than two intervals of the coarsest mesh
-   !> stand for a smooth surface.
-   pure logical function peak_is_at_corner(simulation)
+   !> Whether a peak is at a corner, where it grows whenever intervals are halved, and how it changes from mesh to mesh depends more
+   !> on where the corner lies between nodes: the peak pressure, and the peak shear at a corner that has slipped.
+   pure logical function peak_is_at_corner(simulation, quantity)
       type(simulation_type), intent(in) :: simulation
-      !> A corner lies within `near` nodes of the peak; there is no other curvature within `far` nodes. Least growth.
-      integer, parameter :: near = 1, far = 5
-      real(wp), parameter :: other = 0.25_wp, least_growth = 0.01_wp
-      real(wp) :: change(-far:far), jump
-      integer :: peak, i
+      integer, intent(in) :: quantity
+      type(corner_type) :: corner
+      integer :: peak
 
-      peak_is_at_corner = .false.
-      associate (model => simulation%contact%model, pressure => simulation%contact%state%fields%pressure)
-         peak = maxloc(pressure, dim=1)
-         if (allocated(model%scene%mesh%ends) .or. peak <= far + 1 .or. peak >= size(pressure) - far) return
-         associate (gap => model%initial_gap)
-            change = [((gap(i + 1) - 2.0_wp*gap(i) + gap(i - 1))/model%interval(), i=peak - far, peak + far)]
-         end associate
-         ! Without the curvature beside it.
-         jump = sum(change(-near:near)) - (2*near + 1)*0.5_wp*(change(-far) + change(far))
-         if (.not. jump > 0.0_wp) return
-         if (sum(abs(change(-far:-near - 1))) + sum(abs(change(near + 1:far))) > other*jump) return
-         peak_is_at_corner = model%scene%modulus()*jump/pi*log(2.0_wp) > least_growth*pressure(peak)
+      associate (model => simulation%contact%model, state => simulation%contact%state)
+         select case (quantity)
+         case (quantity_peak_pressure)
+            peak = maxloc(state%fields%pressure, dim=1)
+            call find_corner(model, state%fields%pressure, peak, corner, peak_is_at_corner)
+         case (quantity_peak_shear)
+            peak = maxloc(abs(state%fields%shear), dim=1)
+            call find_corner(model, state%fields%pressure, peak, corner, peak_is_at_corner)
+            peak_is_at_corner = peak_is_at_corner .and. state%friction_work(peak) > 0.0_wp
+         case default
+            peak_is_at_corner = .false.
+         end select
       end associate
    end function peak_is_at_corner
 

@@ -3,8 +3,9 @@ module mfv_state_interior
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
+   use mfv_corners, only: corner_type, corners_of
    use mfv_interior, only: has_interior, interior_type
-   use mfv_kinds, only: wp
+   use mfv_kinds, only: certified, wp
    use mfv_motions, only: bulk_motions
    use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
    use mfv_zone_edges, only: find_patches, patch_type
@@ -24,6 +25,8 @@ contains
       logical, intent(out) :: available
       integer, intent(in), optional :: fewest_elements
       real(wp), dimension(model%nodes()) :: contact_edge, stick_edge
+      type(corner_type), allocatable :: corners(:)
+      integer :: i
 
       available = has_interior(model%scene%lower)
       if (upper) available = has_interior(model%scene%upper)
@@ -32,6 +35,11 @@ contains
       call model%scene%interior(upper, model%arc, model%width, state%fields%pressure, state%fields%shear, contact_edge, &
                                 stick_edge, state%fields%motion(bulk_motions(merge(2, 1, upper))), interior, &
                                 available, fewest_elements)
+      corners = corners_of(model, state)
+      allocate (interior%unresolved(2, size(corners)))
+      do i = 1, size(corners)
+         interior%unresolved(:, i) = corners(i)%place + corners(i)%reach*[-1.0_wp, 1.0_wp]
+      end do
    end subroutine state_interior
 
    !> The largest tension along the surface of a body in a state; `available`: see state_interior.
@@ -44,7 +52,8 @@ contains
       type(interior_type) :: interior
 
       ! Pressure only compresses a straight surface.
-      available = model%scene%can_have_bulk_stress(upper) .and. .not. any(abs(state%fields%shear) > 0.0_wp)
+      available = model%scene%can_have_bulk_stress(upper) .and. &
+                  .not. maxval(abs(state%fields%shear)) > certified*maxval(state%fields%pressure)
       if (available) then
          largest%value = max(state%fields%motion(bulk_motions(merge(2, 1, upper))), 0.0_wp)
          largest%x = ieee_value(1.0_wp, ieee_quiet_nan)
