@@ -11,7 +11,7 @@
 module mfv_edge_solutions
    use mfv_kinds, only: pi, wp
    use mfv_lapack, only: dgesv
-   use mfv_numerics, only: gauss_points
+   use mfv_quadrature, only: gauss_points
    implicit none
    private
    public :: solved_distance, discrete_over_exact, graded_solution_type, new_graded_solution, least_power, most_power

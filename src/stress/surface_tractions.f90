@@ -12,7 +12,7 @@ module mfv_surface_tractions
                                  solved_distance
    use mfv_kinds, only: certified, pi, wp
    use mfv_lapack, only: dgesv
-   use mfv_numerics, only: gauss_points
+   use mfv_quadrature, only: gauss_points
    implicit none
    private
    public :: zone_list_type, traction_elements_type, find_traction_elements, merged, root_shift
