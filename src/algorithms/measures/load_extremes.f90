@@ -28,7 +28,7 @@ module mfv_load_extremes
    !> Stresses that need a search, of the lower and the upper body.
    integer, parameter :: candidate_tension(2) = [1, 2], candidate_von_mises(2) = [3, 4], candidate_count = 4
    !> Most rows of each, those with the largest estimates, in which they are searched for; and in all.
-   integer, parameter :: rows_of(candidate_count) = [8, 8, 3, 3], most_rows = 8
+   integer, parameter :: rows_of(candidate_count) = [5, 5, 3, 3], most_rows = 5
    !> Estimates that differ by less, relative to their values, are of the same state.
    real(wp), parameter :: same = 1.0e-6_wp
    !> Extremes that differ by less, relative to their values, are equal: the first row counts.

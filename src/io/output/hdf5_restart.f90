@@ -141,13 +141,15 @@ contains
          call self%exchange('lowest_slip', slip%lowest, 'smallest slip of the nodes in contact in the present cycle')
          call self%exchange('highest_slip', slip%highest, 'largest slip of the nodes in contact in the present cycle')
       end associate
+      associate (marks => simulation%marks)
+         call self%exchange('mark_steps', marks%step, 'steps of the states mark_1 and so on', 0, most)
+         call self%exchange('mark_reversals', marks%reversal, 'reversals of the states mark_1 and so on', 0, most)
+      end associate
       do i = 1, mark_count
-         associate (mark => simulation%marks(i), name => 'mark_'//to_text(i))
-            call self%exchange(name//'_step', mark%step, 'step of the states '//name, 0, most)
-            call self%exchange(name//'_reversal', mark%reversal, 'reversal of the states '//name, 0, most)
+         associate (mark => simulation%marks(i))
             if (mark%step == 0) cycle
             mark%added = simulation%restart%added
-            call exchange_state(self, name//'_', nodes, mark%state)
+            call exchange_state(self, 'mark_'//to_text(i)//'_', nodes, mark%state)
          end associate
       end do
       if (allocated(self%error) .or. .not. simulation%contact%model%tangential) return
