@@ -1,4 +1,4 @@
-!> The wear of a block of cycles, from the friction work of one of them.
+!> The wear of a block of cycles, from the friction work of the cycle at its start and of that after it.
 !>
 !> The depth of wear per cycle is r, the coefficient times the friction work of the computed cycle (Archard: over the coefficient of
 !> friction, which is the integral of the pressure over the slip path). Over a block of N cycles the pressure moves from where
@@ -10,8 +10,17 @@
 !>
 !> C is the compliance and d the change of the approach. Nodes that do not slip have their present pressure p. The gap is zero at
 !> nodes that slip in the cycle or are in contact, else the present one. All nodes that slip in the cycle are thus loaded at once,
-!> and coupling is neglected, in the prediction of P - p only: short blocks wear by N r. Other nodes have the r/p of the nearest
-!> ones.
+!> and coupling is neglected. Other nodes have the r/p of the nearest ones.
+!>
+!> The cycle after the block tells its error. With the depths f1 and f2 of one cycle (N = 1) at the start and after the block, which
+!> change linearly in between, the N cycles wear by t = N f1 + (N - 1) (f2 - f1)/2 (trapezoidal rule). The correction c of h is
+!> t - h, damped as the block is, so that pressures that have come to equilibrium do not rise again:
+!>
+!>     C q - e + N (r/p) q = -(t - h) in contact after the block, q = 0 elsewhere;   force of q = 0, or e = 0;
+!>     c = t - h + N (r/p) q.
+!>
+!> h + c is of second order in N, whatever the prediction neglects: Rosenbrock's method with two stages and an approximate Jacobian
+!> (Verwer, Spee, Blom and Hundsdorfer 1999, SIAM J. Sci. Comput. 20, 1456: ROS2 with gamma = 1), whose stage of first order is h.
 module mfv_wear_block
    use mfv_compliance, only: block_wp
    use mfv_contact_model, only: contact_model_type
@@ -24,63 +33,126 @@ module mfv_wear_block
    use mfv_wear, only: wear_archard
    implicit none
    private
-   public :: find_wear_block, work_of_wear
+   public :: wear_block_type, find_wear_block, work_of_wear
 
    !> The problem of a block: nodes near the contact, their softness r/p per cycle, pressure p, gap without any pressure on them,
-   !> arm and width, and the compliance between them; in terms of the modulus and the length of the mesh.
+   !> arm and width, and the compliance between them; in terms of the modulus and the `length` of the mesh.
    type :: problem_type
       integer, allocatable :: node(:)
       real(wp), allocatable :: softness(:), pressure(:), opening(:), arm(:), width(:), compliance(:, :)
       logical :: presses = .true.
+      real(wp) :: length = 0.0_wp
    end type problem_type
+
+   type :: wear_block_type
+      integer :: cycles = 1
+      !> Depth of the wear of the block, and of its first cycle: length, shape (nodes).
+      real(wp), allocatable :: depth(:), first(:)
+      !> Predicted change of the pressures or of the wear over the block, see change_of.
+      real(wp) :: change = 0.0_wp
+      type(problem_type), private :: problem
+   contains
+      procedure :: judge
+   end type wear_block_type
 
 contains
 
-   !> The number of cycles of a block, at most `remaining`, and the depth of their wear (length, shape (nodes)), from the friction
-   !> work per unit of surface of its first cycle, whose end is the present state. `presses`: whether the normal force is given.
-   !> The contact may reach the end of the mesh: wear beyond it is missing. `is_coarse`: the change is above the tolerance, in one
-   !> cycle or in a block of a given number of them.
-   subroutine find_wear_block(path, work, remaining, presses, cycles, depth, is_coarse)
+   !> A block from the friction work per unit of surface of its first cycle, whose end is the present state. `cycles`: their number;
+   !> 0: as many as the predicted change allows, at most `most`. `presses`: whether the normal force is given. The contact may
+   !> reach the end of the mesh: wear beyond it is missing.
+   subroutine find_wear_block(path, work, cycles, most, presses, block)
       type(contact_path_type), intent(in) :: path
       real(wp), intent(in) :: work(:)
-      integer, intent(in) :: remaining
+      integer, intent(in) :: cycles, most
       logical, intent(in) :: presses
-      integer, intent(out) :: cycles
-      real(wp), intent(out) :: depth(:)
-      logical, intent(out) :: is_coarse
+      type(wear_block_type), intent(out) :: block
       integer, parameter :: most_trials = 20
       real(wp), parameter :: safety = 0.9_wp, smallest = 0.1_wp
-      type(problem_type) :: problem
       real(wp), allocatable :: pressure(:)
-      real(wp) :: change, worn
+      real(wp) :: worn, length
       integer :: trial, margin, n
 
-      depth = 0.0_wp
-      is_coarse = .false.
-      cycles = remaining
+      length = path%model%length()
+      allocate (block%depth(size(work)), block%first(size(work)), source=0.0_wp)
+      block%cycles = merge(cycles, most, cycles > 0)
       margin = size(work)/8
-      problem%presses = presses
-      worn = sum(path%model%width*path%state%worn)/path%model%length()**2
-      call gather(path, work, margin, problem)
-      if (size(problem%node) == 0) return
-      associate (wear => path%model%scene%wear)
-         if (wear%block > 0) cycles = min(wear%block, remaining)
+      block%problem%presses = presses
+      worn = sum(path%model%width*path%state%worn)/length**2
+      call gather(path, work, margin, block%problem)
+      if (size(block%problem%node) == 0) return
+      associate (tolerance => path%model%scene%wear%tolerance, problem => block%problem)
          do trial = 1, most_trials
             do
-               call solve(problem, real(cycles, wp), pressure)
+               call solve(problem, real(block%cycles, wp), pressure)
                n = size(pressure)
                if (max(pressure(1), pressure(n)) <= 0.0_wp .or. margin >= size(work)) exit
                margin = 2*margin + 1
                call gather(path, work, margin, problem)
             end do
-            change = change_of(problem, cycles, pressure, worn)
-            if (wear%block > 0 .or. cycles == 1 .or. change <= wear%tolerance) exit
-            cycles = max(1, int(max(smallest, safety*wear%tolerance/change)*cycles))
+            block%change = change_of(problem, block%cycles, pressure, worn)
+            if (cycles > 0 .or. block%cycles == 1 .or. block%change <= tolerance) exit
+            block%cycles = max(1, int(max(smallest, safety*tolerance/block%change)*block%cycles))
          end do
+         block%depth(problem%node) = block%cycles*problem%softness*pressure*length
+         call solve(problem, 1.0_wp, pressure)
+         block%first(problem%node) = problem%softness*pressure*length
       end associate
-      depth(problem%node) = cycles*problem%softness*pressure*path%model%length()
-      is_coarse = change > path%model%scene%wear%tolerance
    end subroutine find_wear_block
+
+   !> Judge a block by the depth `next` that the cycle after it wears, length, shape (nodes): on a mesh that may have grown since.
+   !> `correction`: of the depth of the block, length, shape (nodes). `error`: the larger of that of the worn area and of the largest
+   !> depth, relative to all that is `worn` after the block, depth; `width`: of the nodes. A block of one cycle has no correction; its
+   !> error is what that of two cycles would have been.
+   subroutine judge(self, next, worn, width, correction, error)
+      class(wear_block_type), intent(in) :: self
+      real(wp), intent(in) :: next(:), worn(:), width(:)
+      real(wp), allocatable, intent(out) :: correction(:)
+      real(wp), intent(out) :: error
+      real(wp), allocatable :: pressure(:), first(:), depth(:)
+      real(wp) :: n
+      integer :: extra
+
+      n = max(self%cycles, 2)
+      extra = (size(next) - size(self%depth))/2
+      first = padded(self%first, extra)
+      depth = padded(self%depth, extra)
+      error = 0.0_wp
+      if (size(self%problem%node) > 0) then
+         associate (problem => self%problem, node => self%problem%node + extra)
+            call solve(problem, n, pressure)
+            depth(node) = n*problem%softness*pressure*problem%length
+            correction = n*first + 0.5_wp*n*(n - 1.0_wp)*(next - first)/self%cycles - depth
+            correction(node) = damped(problem, n, pressure > 0.0_wp, correction(node)/problem%length)*problem%length
+         end associate
+      else
+         correction = n*next
+      end if
+      if (any(worn > 0.0_wp)) error = max(sum(width*abs(correction))/sum(width*worn), maxval(abs(correction))/maxval(worn))
+      if (self%cycles == 1) correction = 0.0_wp
+   end subroutine judge
+
+   !> Values with `extra` zeros at either end.
+   pure function padded(values, extra)
+      real(wp), intent(in) :: values(:)
+      integer, intent(in) :: extra
+      real(wp) :: padded(size(values) + 2*extra)
+
+      padded = 0.0_wp
+      padded(extra + 1:extra + size(values)) = values
+   end function padded
+
+   !> A depth of wear that changes the pressures of `active` nodes, which change it in the other direction over `cycles` cycles; over
+   !> the length of the mesh, shape (nodes of the problem).
+   function damped(problem, cycles, active, depth)
+      type(problem_type), intent(in) :: problem
+      real(wp), intent(in) :: cycles, depth(:)
+      logical, intent(in) :: active(:)
+      real(wp) :: damped(size(depth)), pressure(size(depth)), approach
+
+      pressure = 0.0_wp
+      call solve_active(problem, cycles, active, depth, 0.0_wp, pressure, approach)
+      damped = depth + cycles*problem%softness*pressure
+   end function damped
 
    !> The work of friction per unit of surface that wears it by `depth`: force/length and length, shape (nodes).
    pure function work_of_wear(model, depth) result(work)
@@ -138,6 +210,7 @@ contains
          end do
          gap = model%gap(path%state%fields)
          associate (length => model%length(), stress => model%compliance%modulus, node => problem%node)
+            problem%length = length
             problem%softness = softness(node)*stress/length
             problem%pressure = pressure(node)/stress
             problem%arm = model%normal_arm(node, motion_approach)
@@ -198,7 +271,8 @@ contains
       pressure = problem%pressure
       active = pressure > 0.0_wp
       do pass = 1, most_passes
-         call solve_active(problem, cycles, active, pressure, approach)
+         call solve_active(problem, cycles, active, problem%opening, sum(problem%width*problem%arm*problem%pressure), pressure, &
+                           approach)
          gap = problem%opening - approach*problem%arm + matmul(problem%compliance, pressure) + cycles*problem%softness*pressure
          wanted = merge(pressure >= 0.0_wp, gap < 0.0_wp, active)
          if (all(wanted .eqv. active)) exit
@@ -207,11 +281,11 @@ contains
       pressure = max(pressure, 0.0_wp)
    end subroutine solve
 
-   !> The pressures of active nodes, zero elsewhere, and the further approach of the upper body; pressures are unchanged if the
-   !> equations are singular.
-   subroutine solve_active(problem, cycles, active, pressure, approach)
+   !> The pressures of active nodes with the given gap without them (`opening`) and normal force, zero elsewhere, and the further
+   !> approach of the upper body; pressures are unchanged if the equations are singular.
+   subroutine solve_active(problem, cycles, active, opening, force, pressure, approach)
       type(problem_type), intent(in) :: problem
-      real(wp), intent(in) :: cycles
+      real(wp), intent(in) :: cycles, opening(:), force
       logical, intent(in) :: active(:)
       real(wp), intent(inout) :: pressure(:)
       real(wp), intent(out) :: approach
@@ -228,10 +302,10 @@ contains
          matrix(i, i) = matrix(i, i) + cycles*problem%softness(at(i))
       end do
       matrix(:m, m + 1) = -problem%arm(at)
-      right(:m) = -problem%opening(at)
+      right(:m) = -opening(at)
       matrix(m + 1, :m) = merge(problem%width(at)*problem%arm(at), 0.0_wp, problem%presses)
       matrix(m + 1, m + 1) = merge(0.0_wp, 1.0_wp, problem%presses)
-      right(m + 1) = merge(sum(problem%width*problem%arm*problem%pressure), 0.0_wp, problem%presses)
+      right(m + 1) = merge(force, 0.0_wp, problem%presses)
       call dgesv(m + 1, 1, matrix, m + 1, pivot, right, m + 1, code)
       if (code /= 0) return
       pressure = 0.0_wp
