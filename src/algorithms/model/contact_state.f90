@@ -29,9 +29,9 @@ module mfv_contact_state
       real(wp), allocatable :: cycle_work(:), pressure_work(:)
       !> Depth worn off both surfaces together, length, shape (nodes).
       real(wp), allocatable :: worn(:)
-      !> Area worn off in cycles that change the pressures by more than the tolerance of the wear, or in given blocks whose error is
-      !> larger, length^2.
-      real(wp) :: coarsely_worn = 0.0_wp
+      !> Area worn off in single cycles that change the pressures by more than the tolerance of the wear, and estimated error of
+      !> what is worn off in given blocks of cycles, length^2.
+      real(wp) :: coarsely_worn = 0.0_wp, wear_error = 0.0_wp
    contains
       procedure :: set_status
       procedure :: copy_from
@@ -96,6 +96,7 @@ contains
       self%pressure_work = other%pressure_work
       self%worn = other%worn
       self%coarsely_worn = other%coarsely_worn
+      self%wear_error = other%wear_error
    end subroutine copy_from
 
    !> State of node `node` for a friction law, with the given fields and coefficients of friction.

@@ -114,6 +114,9 @@ module mfv_simulation
       !> Whether its wear has begun; `block` and what follows are then known.
       logical :: is_worn = .false.
       type(wear_block_type) :: block
+      !> Depth that the first cycle after the block wears, length, shape (nodes); and whether it is to be worn off.
+      real(wp), allocatable :: settling(:)
+      logical :: settles = .false.
       !> The start of the block: the state at the end of its first cycle. The last cycle only if there is no load history.
       type(saved_path_type) :: contact
       type(position_type) :: position
@@ -293,12 +296,14 @@ contains
 
    !> Judge the block of cycles of wear before the present cycle by this cycle. If its error is above the tolerance, go back to its
    !> start and plan a shorter one, else plan the block that begins with this cycle. The first cycle of a step wears alone, since it
-   !> often dissipates otherwise than those that follow, and so does the last one, which judges the block before it.
+   !> often dissipates otherwise than those that follow; so do the two after each block: the slip that the wear of a block causes at
+   !> once is not that of the cycles that follow. A block may err by the part `part` of the tolerance, since errors add up.
    subroutine plan_block(self, step)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
-      real(wp), parameter :: safety = 0.9_wp, smallest = 0.1_wp, largest = 5.0_wp
+      real(wp), parameter :: safety = 0.9_wp, smallest = 0.1_wp, largest = 5.0_wp, part = 0.5_wp
       real(wp), allocatable :: correction(:)
+      type(wear_block_type) :: next
       real(wp) :: error, factor
       integer :: cycles
 
@@ -306,17 +311,21 @@ contains
       allocate (correction(self%contact%model%nodes()), source=0.0_wp)
       associate (wear => self%contact%model%scene%wear)
          if (allocated(self%trial)) then
-            call judge_block(self, correction, error)
+            call find_wear_block(self%contact, cycle_work(self), 1, 1, is_pressed(self), next)
+            if (self%trial%block%cycles > 1 .and. .not. allocated(self%trial%settling)) then
+               self%trial%settling = next%depth
+               self%trial%settles = .true.
+               return
+            end if
+            call judge_block(self, next, correction, error)
             factor = largest
-            if (error > 0.0_wp) factor = min(max(safety*sqrt(wear%tolerance/error), smallest), largest)
+            if (error > 0.0_wp) factor = min(max(safety*sqrt(part*wear%tolerance/error), smallest), largest)
             cycles = max(int(factor*max(self%trial%block%cycles, 2)), 1)
-            if (error > wear%tolerance .and. self%trial%block%cycles > 1) then
-               if (wear%block == 0) then
-                  call shorten_block(self, factor)
-                  return
-               end if
-               self%contact%state%coarsely_worn = self%contact%state%coarsely_worn + self%leg%cycle%worn_area &
-                                                  - self%leg%cycle%worn_area_before
+            if (self%trial%block%cycles > 1 .and. wear%block > 0) then
+               self%contact%state%wear_error = self%contact%state%wear_error + error*self%leg%cycle%worn_area
+            else if (self%trial%block%cycles > 1 .and. error > part*wear%tolerance) then
+               call shorten_block(self, factor)
+               return
             end if
             deallocate (self%trial)
          end if
@@ -328,15 +337,19 @@ contains
       call move_alloc(correction, self%trial%correction)
    end subroutine plan_block
 
-   !> Correction of the depth of the last block, length, shape (nodes), and its error relative to all that is worn.
-   subroutine judge_block(self, correction, error)
+   !> Correction of the depth of the last block, length, shape (nodes), and its error relative to all that is worn; `next`: of the
+   !> present cycle.
+   subroutine judge_block(self, next, correction, error)
       class(simulation_type), intent(in) :: self
+      type(wear_block_type), intent(in) :: next
       real(wp), allocatable, intent(out) :: correction(:)
       real(wp), intent(out) :: error
-      type(wear_block_type) :: next
+      real(wp), allocatable :: settling(:)
 
-      call find_wear_block(self%contact, cycle_work(self), 1, 1, is_pressed(self), next)
-      call self%trial%block%judge(next%depth, self%contact%state%worn, self%contact%model%width, correction, error)
+      allocate (settling(0))
+      if (allocated(self%trial%settling)) settling = self%trial%settling
+      call widen_with_zeros(settling, size(next%depth))
+      call self%trial%block%judge(settling, next%depth, self%contact%state%worn, self%contact%model%width, correction, error)
    end subroutine judge_block
 
    !> Most cycles of the block that begins with the present one.
@@ -344,7 +357,7 @@ contains
       class(simulation_type), intent(in) :: self
       type(step_type), intent(in) :: step
 
-      most = max(step%cycles - self%leg%number/step%turns(), 1)
+      most = max(step%cycles - self%leg%number/step%turns() - 1, 1)
    end function most_worn_at_once
 
    !> Friction work of the cycle that ends here per unit of surface, force/length, shape (nodes).
@@ -369,7 +382,7 @@ contains
       class(simulation_type), intent(in) :: self
 
       block_is_due = .false.
-      if (allocated(self%trial)) block_is_due = .not. self%trial%is_worn
+      if (allocated(self%trial)) block_is_due = self%trial%settles .or. .not. self%trial%is_worn
    end function block_is_due
 
    !> Whether a shorter block may do without an error in the wear or the cycle after it.
@@ -403,6 +416,8 @@ contains
          if (self%keep_states == states_last_cycle) call drop_snapshots(self)
          trial%cycles = max(int(factor*trial%block%cycles), 1)
          trial%is_worn = .false.
+         trial%settles = .false.
+         if (allocated(trial%settling)) deallocate (trial%settling)
       end associate
    end subroutine shorten_block
 
@@ -432,6 +447,11 @@ contains
 
       turns = step%turns()
       associate (trial => self%trial, contact => self%contact)
+         if (trial%settles) then
+            trial%settles = .false.
+            call wear_by(self, trial%settling, step, before, segments, observer, error)
+            return
+         end if
          do
             call find_wear_block(contact, cycle_work(self), trial%cycles, most_worn_at_once(self, step), is_pressed(self), &
                                  trial%block)

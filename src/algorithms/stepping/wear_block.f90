@@ -12,15 +12,18 @@
 !> nodes that slip in the cycle or are in contact, else the present one. All nodes that slip in the cycle are thus loaded at once,
 !> and coupling is neglected. Other nodes have the r/p of the nearest ones.
 !>
-!> The cycle after the block tells its error. With the depths f1 and f2 of one cycle (N = 1) at the start and after the block, which
-!> change linearly in between, the N cycles wear by t = N f1 + (N - 1) (f2 - f1)/2 (trapezoidal rule). The correction c of h is
-!> t - h, damped as the block is, so that pressures that have come to equilibrium do not rise again:
+!> The two cycles after the block, each alone, tell its error. The first of them wears by f1, with slip that the wear of the block
+!> causes; the next one, f2, with f of one cycle (N = 1) before the block, tells what the N + 1 cycles wear: by t = (N + 1) f +
+!> N (f2 - f)/2, the trapezoidal rule. The correction c is t - h - f1, damped as the block is, so that pressures that have come to
+!> equilibrium do not rise again:
 !>
-!>     C q - e + N (r/p) q = -(t - h) in contact after the block, q = 0 elsewhere;   force of q = 0, or e = 0;
-!>     c = t - h + N (r/p) q.
+!>     C q - e + N (r/p) q = -(t - h - f1) in contact after the block, q = 0 elsewhere;   force of q = 0, or e = 0;
+!>     c = t - h - f1 + N (r/p) q.
 !>
-!> h + c is of second order in N, whatever the prediction neglects: Rosenbrock's method with two stages and an approximate Jacobian
-!> (Verwer, Spee, Blom and Hundsdorfer 1999, SIAM J. Sci. Comput. 20, 1456: ROS2 with gamma = 1), whose stage of first order is h.
+!> h + f1 + c is of second order in N, whatever the prediction neglects: Rosenbrock's method with two stages and an approximate
+!> Jacobian (Verwer, Spee, Blom and Hundsdorfer 1999, SIAM J. Sci. Comput. 20, 1456: ROS2 with gamma = 1). To abs(c), which is the
+!> error of first order, the estimated error adds N abs(f2 - f1 - (f2 - f)/(N + 1))/2: if f2 still depends on the wear of the
+!> block, the slip that this wear causes would be taken for that of every cycle, and wear feed on itself.
 module mfv_wear_block
    use mfv_compliance, only: block_wp
    use mfv_contact_model, only: contact_model_type
@@ -69,15 +72,14 @@ contains
       integer, parameter :: most_trials = 20
       real(wp), parameter :: safety = 0.9_wp, smallest = 0.1_wp
       real(wp), allocatable :: pressure(:)
-      real(wp) :: worn, length
+      real(wp) :: worn
       integer :: trial, margin, n
 
-      length = path%model%length()
       allocate (block%depth(size(work)), block%first(size(work)), source=0.0_wp)
       block%cycles = merge(cycles, most, cycles > 0)
       margin = size(work)/8
       block%problem%presses = presses
-      worn = sum(path%model%width*path%state%worn)/length**2
+      worn = path%model%force(path%state%worn)/path%model%length()**2
       call gather(path, work, margin, block%problem)
       if (size(block%problem%node) == 0) return
       associate (tolerance => path%model%scene%wear%tolerance, problem => block%problem)
@@ -93,41 +95,54 @@ contains
             if (cycles > 0 .or. block%cycles == 1 .or. block%change <= tolerance) exit
             block%cycles = max(1, int(max(smallest, safety*tolerance/block%change)*block%cycles))
          end do
-         block%depth(problem%node) = block%cycles*problem%softness*pressure*length
-         call solve(problem, 1.0_wp, pressure)
-         block%first(problem%node) = problem%softness*pressure*length
+         block%depth(problem%node) = block%cycles*problem%softness*pressure*problem%length
+         if (block%cycles > 1) call solve(problem, 1.0_wp, pressure)
+         block%first(problem%node) = problem%softness*pressure*problem%length
       end associate
    end subroutine find_wear_block
 
-   !> Judge a block by the depth `next` that the cycle after it wears, length, shape (nodes): on a mesh that may have grown since.
-   !> `correction`: of the depth of the block, length, shape (nodes). `error`: the larger of that of the worn area and of the largest
-   !> depth, relative to all that is `worn` after the block, depth; `width`: of the nodes. A block of one cycle has no correction; its
-   !> error is what that of two cycles would have been.
-   subroutine judge(self, next, worn, width, correction, error)
+   !> Judge a block by what the two cycles after it wear, `settling` and `next`, depths: length, shape (nodes), on a mesh that may
+   !> have grown since. `correction`: of the depth of both the block and the cycle `settling`, length, shape (nodes). `error`: the
+   !> larger of that of the worn area and of the largest depth, relative to all that is `worn` before the cycle `next`, depth, or to
+   !> round-off; `width`: of the nodes. A block of one cycle has no correction; its error is what that of two cycles would have
+   !> been, from `next` alone.
+   subroutine judge(self, settling, next, worn, width, correction, error)
       class(wear_block_type), intent(in) :: self
-      real(wp), intent(in) :: next(:), worn(:), width(:)
+      real(wp), intent(in) :: settling(:), next(:), worn(:), width(:)
       real(wp), allocatable, intent(out) :: correction(:)
       real(wp), intent(out) :: error
-      real(wp), allocatable :: pressure(:), first(:), depth(:)
+      real(wp), parameter :: round_off = 1.0e-13_wp
+      real(wp), dimension(size(next)) :: first, depth, slope, memory
+      real(wp), allocatable :: pressure(:)
       real(wp) :: n
       integer :: extra
 
-      n = max(self%cycles, 2)
+      n = self%cycles
       extra = (size(next) - size(self%depth))/2
       first = padded(self%first, extra)
       depth = padded(self%depth, extra)
+      memory = 0.0_wp
+      allocate (correction(size(next)), source=0.0_wp)
       error = 0.0_wp
-      if (size(self%problem%node) > 0) then
-         associate (problem => self%problem, node => self%problem%node + extra)
+      if (size(self%problem%node) == 0) return
+      associate (problem => self%problem, node => self%problem%node + extra)
+         if (self%cycles == 1) then
+            slope = next - first
+            n = 2.0_wp
             call solve(problem, n, pressure)
             depth(node) = n*problem%softness*pressure*problem%length
-            correction = n*first + 0.5_wp*n*(n - 1.0_wp)*(next - first)/self%cycles - depth
-            correction(node) = damped(problem, n, pressure > 0.0_wp, correction(node)/problem%length)*problem%length
-         end associate
-      else
-         correction = n*next
-      end if
-      if (any(worn > 0.0_wp)) error = max(sum(width*abs(correction))/sum(width*worn), maxval(abs(correction))/maxval(worn))
+            correction = n*first + 0.5_wp*n*(n - 1.0_wp)*slope - depth
+         else
+            slope = (next - first)/(n + 1.0_wp)
+            call solve(problem, n, pressure)
+            correction = (n + 1.0_wp)*first + 0.5_wp*n*(n + 1.0_wp)*slope - depth - settling
+            memory = 0.5_wp*n*(next - settling - slope)
+         end if
+         correction(node) = damped(problem, n, pressure > 0.0_wp, correction(node)/problem%length)*problem%length
+      end associate
+      associate (wrong => abs(correction) + abs(memory), total => max(worn, round_off*self%problem%length))
+         error = max(sum(width*wrong)/sum(width*max(total, wrong)), maxval(wrong)/maxval(max(total, wrong)))
+      end associate
       if (self%cycles == 1) correction = 0.0_wp
    end subroutine judge
 
@@ -141,8 +156,8 @@ contains
       padded(extra + 1:extra + size(values)) = values
    end function padded
 
-   !> A depth of wear that changes the pressures of `active` nodes, which change it in the other direction over `cycles` cycles; over
-   !> the length of the mesh, shape (nodes of the problem).
+   !> A depth of wear with that of the pressures of `active` nodes which it changes, over `cycles` cycles; over the length of the
+   !> mesh, shape (nodes of the problem).
    function damped(problem, cycles, active, depth)
       type(problem_type), intent(in) :: problem
       real(wp), intent(in) :: cycles, depth(:)

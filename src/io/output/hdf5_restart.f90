@@ -315,7 +315,8 @@ contains
       call self%exchange('cycle_work', state%cycle_work, 'magnitudes of the friction work of this cycle')
       call self%exchange('pressure_work', state%pressure_work, 'the same times the pressure')
       call self%exchange('worn', state%worn, 'depth worn off both surfaces')
-      call self%exchange('coarsely_worn', state%coarsely_worn, 'area worn off in blocks of cycles that are too large')
+      call self%exchange('coarsely_worn', state%coarsely_worn, 'area worn off in single cycles that wear too much')
+      call self%exchange('wear_error', state%wear_error, 'estimated error of the area worn off in given blocks of cycles')
       call self%exchange('normal', state%fields%normal, 'separation of the surfaces by deformation and rotation')
       call self%exchange('tangential', state%fields%tangential, 'displacement of the lower surface to the right relative to '// &
                          'the upper one')
