@@ -148,7 +148,7 @@ contains
       associate (model => simulation%contact%model, state => simulation%contact%state)
          if (.not. model%scene%wear%acts() .or. simulation%cycle_count == 0) return
          worn = model%force(state%worn)
-         last = worn - simulation%cycles(simulation%cycle_count)%worn_area_before
+         last = worn - simulation%cycles(simulation%cycle_count)%worn_area
          if (min(state%coarsely_worn, last) > model%scene%wear%tolerance*worn) &
             call add_text(warnings, 'worn_area and wear_depth: '//to_text(100.0_wp*state%coarsely_worn/worn, 3)//' % of the '// &
                           'worn area is from cycles that each change the pressures or the wear by more than the fraction '// &

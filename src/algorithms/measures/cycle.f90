@@ -39,10 +39,9 @@ module mfv_cycle
       real(wp), dimension(motion_count) :: lowest_force = 0.0_wp, highest_force = 0.0_wp, lowest_motion = 0.0_wp, &
                                            highest_motion = 0.0_wp
       real(wp) :: lowest_stick_ratio = 0.0_wp, highest_stick_ratio = 0.0_wp
-      !> Cycles of the block of wear that begins with this one; area worn off the profiles before it, and before the one computed
-      !> before it in this step, length^2.
+      !> Cycles of the block of wear that begins with this one; area worn off the profiles before it, length^2.
       integer :: block = 1
-      real(wp) :: worn_area = 0.0_wp, worn_area_before = 0.0_wp
+      real(wp) :: worn_area = 0.0_wp
       !> Largest change of a traction from start to return, relative to the largest traction so far.
       real(wp) :: change = 0.0_wp
       !> Energy dissipated in the first cycle of this step, per unit thickness: force.

@@ -774,9 +774,7 @@ contains
       end if
       self%cycles_done = self%cycles_done + 1
       cycle%number = leg/turns
-      cycle%worn_area_before = cycle%worn_area
       cycle%worn_area = self%contact%model%force(self%contact%state%worn)
-      if (cycle%number == 1) cycle%worn_area_before = cycle%worn_area
       cycle%overall = self%cycles_done
       cycle%start = cycle%return
       self%marks(mark_cycle_start) = self%marks(mark_return)

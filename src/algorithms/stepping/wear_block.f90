@@ -14,16 +14,16 @@
 !>
 !> The two cycles after the block, each alone, tell its error. The first of them wears by f1, with slip that the wear of the block
 !> causes; the next one, f2, with f of one cycle (N = 1) before the block, tells what the N + 1 cycles wear: by t = (N + 1) f +
-!> N (f2 - f)/2, the trapezoidal rule. The correction c is t - h - f1, damped as the block is, so that pressures that have come to
-!> equilibrium do not rise again:
+!> N (f2 - f)/2, the trapezoidal rule. The correction of the depth is e = t - h - f1, damped as the block is by the pressures q that
+!> it causes:
 !>
-!>     C q - e + N (r/p) q = -(t - h - f1) in contact after the block, q = 0 elsewhere;   force of q = 0, or e = 0;
-!>     c = t - h - f1 + N (r/p) q.
+!>     C q - d + N (r/p) q = -e in contact after the block, q = 0 elsewhere;   force of q = 0, or d = 0;   c = e + N (r/p) q,
 !>
-!> h + f1 + c is of second order in N, whatever the prediction neglects: Rosenbrock's method with two stages and an approximate
-!> Jacobian (Verwer, Spee, Blom and Hundsdorfer 1999, SIAM J. Sci. Comput. 20, 1456: ROS2 with gamma = 1). To abs(c), which is the
-!> error of first order, the estimated error adds N abs(f2 - f1 - (f2 - f)/(N + 1))/2: if f2 still depends on the wear of the
-!> block, the slip that this wear causes would be taken for that of every cycle, and wear feed on itself.
+!> and once more, so that pressures that have come to equilibrium stay there. With it the block is of second order in N, whatever
+!> the prediction neglects: Rosenbrock's method with two stages and an approximate Jacobian (Verwer, Spee, Blom and Hundsdorfer
+!> 1999, SIAM J. Sci. Comput. 20, 1456: ROS2 with gamma = 1, damped further). The error of first order is abs(c), to which the
+!> estimate adds N abs(f2 - f1 - (f2 - f)/(N + 1))/2: if f2 still depends on the wear of the block, the slip that this wear causes
+!> would be taken for that of every cycle, and wear feed on itself.
 module mfv_wear_block
    use mfv_compliance, only: block_wp
    use mfv_contact_model, only: contact_model_type
@@ -112,7 +112,7 @@ contains
       real(wp), allocatable, intent(out) :: correction(:)
       real(wp), intent(out) :: error
       real(wp), parameter :: round_off = 1.0e-13_wp
-      real(wp), dimension(size(next)) :: first, depth, slope, memory
+      real(wp), dimension(size(next)) :: first, depth, slope, memory, first_order
       real(wp), allocatable :: pressure(:)
       real(wp) :: n
       integer :: extra
@@ -138,9 +138,12 @@ contains
             correction = (n + 1.0_wp)*first + 0.5_wp*n*(n + 1.0_wp)*slope - depth - settling
             memory = 0.5_wp*n*(next - settling - slope)
          end if
-         correction(node) = damped(problem, n, pressure > 0.0_wp, correction(node)/problem%length)*problem%length
+         first_order = correction
+         call damp(problem, n, pressure > 0.0_wp, node, first_order)
+         correction = first_order
+         call damp(problem, n, pressure > 0.0_wp, node, correction)
       end associate
-      associate (wrong => abs(correction) + abs(memory), total => max(worn, round_off*self%problem%length))
+      associate (wrong => abs(first_order) + abs(memory), total => max(worn, round_off*self%problem%length))
          error = max(sum(width*wrong)/sum(width*max(total, wrong)), maxval(wrong)/maxval(max(total, wrong)))
       end associate
       if (self%cycles == 1) correction = 0.0_wp
@@ -156,18 +159,20 @@ contains
       padded(extra + 1:extra + size(values)) = values
    end function padded
 
-   !> A depth of wear with that of the pressures of `active` nodes which it changes, over `cycles` cycles; over the length of the
-   !> mesh, shape (nodes of the problem).
-   function damped(problem, cycles, active, depth)
+   !> Add to a depth of wear, length, shape (nodes), what the pressures of `active` nodes of the problem, which it changes, wear
+   !> over `cycles` cycles; `node`: numbers of the nodes of the problem.
+   subroutine damp(problem, cycles, active, node, depth)
       type(problem_type), intent(in) :: problem
-      real(wp), intent(in) :: cycles, depth(:)
+      real(wp), intent(in) :: cycles
       logical, intent(in) :: active(:)
-      real(wp) :: damped(size(depth)), pressure(size(depth)), approach
+      integer, intent(in) :: node(:)
+      real(wp), intent(inout) :: depth(:)
+      real(wp) :: pressure(size(node)), approach
 
       pressure = 0.0_wp
-      call solve_active(problem, cycles, active, depth, 0.0_wp, pressure, approach)
-      damped = depth + cycles*problem%softness*pressure
-   end function damped
+      call solve_active(problem, cycles, active, depth(node)/problem%length, 0.0_wp, pressure, approach)
+      depth(node) = depth(node) + cycles*problem%softness*pressure*problem%length
+   end subroutine damp
 
    !> The work of friction per unit of surface that wears it by `depth`: force/length and length, shape (nodes).
    pure function work_of_wear(model, depth) result(work)
