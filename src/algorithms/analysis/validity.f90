@@ -167,8 +167,8 @@ contains
                        'their forces, or negative; set a larger datum')
    end subroutine check_datum
 
-   !> Cycles, or given blocks of them, that wear too much at once: slip paths are constant within them, pressures are those at the
-   !> end. In many more cycles, in which the wear becomes small, it tends to the same limit.
+   !> Cycles that wear too much at once: slip paths are constant within them, pressures are those at the end. In many more cycles,
+   !> in which the wear becomes small, it tends to the same limit. And given blocks of cycles that wear otherwise than single ones.
    subroutine check_wear(simulation, warnings)
       type(simulation_type), intent(in) :: simulation
       type(string_type), allocatable, intent(inout) :: warnings(:)
@@ -178,11 +178,14 @@ contains
          if (.not. model%scene%wear%acts() .or. simulation%cycle_count == 0) return
          worn = model%force(state%worn)
          last = worn - simulation%cycles(simulation%cycle_count)%worn_area
-         if (.not. min(state%coarsely_worn, last) > model%scene%wear%tolerance*worn) return
-         call add_text(warnings, to_text(100.0_wp*state%coarsely_worn/worn, 3)//' % of the worn area is from cycles, or given '// &
-                       'blocks of cycles, that change the pressures or the wear by more than the fraction '// &
-                       to_text(model%scene%wear%tolerance, 2)//' (tolerance of &wear): it may be half of the right one; use a '// &
-                       'smaller coefficient and more cycles, or a smaller block')
+         if (min(state%coarsely_worn, last) > model%scene%wear%tolerance*worn) &
+            call add_text(warnings, 'worn_area and wear_depth: '//to_text(100.0_wp*state%coarsely_worn/worn, 3)//' % of the '// &
+                          'worn area is from cycles that each change the pressures or the wear by more than the fraction '// &
+                          to_text(model%scene%wear%tolerance, 2)//' (tolerance of &wear): it may be half of the right one; '// &
+                          'use a smaller coefficient and more cycles')
+         if (state%wear_error > model%scene%wear%tolerance*worn) &
+            call add_text(warnings, 'worn_area and wear_depth: the estimated error from the given blocks of cycles is '// &
+                          to_text(100.0_wp*state%wear_error/worn, 3)//' %; use smaller blocks, or leave out block of &wear')
       end associate
    end subroutine check_wear
 

@@ -43,9 +43,6 @@ module mfv_cycle
       !> Cycles of the block of wear that begins with this one; area worn off the profiles before it, length^2.
       integer :: block = 1
       real(wp) :: worn_area = 0.0_wp
-      !> Dissipation of the cycle computed before in this step, force, and the cycles of its block.
-      real(wp) :: dissipation_before = 0.0_wp
-      integer :: block_before = 1
       !> Largest change of a traction from start to return, relative to the largest traction so far.
       real(wp) :: change = 0.0_wp
       !> Energy dissipated in the first cycle of this step, per unit thickness: force.

@@ -161,7 +161,7 @@ contains
       self%model = model
       self%model%scene%method%stepping = chosen_stepping(model)
       call new_contact_system(self%model, self%system)
-      self%state = new_contact_state(model%nodes())
+      self%state = new_contact_state(model%nodes(), model%scene%wear%acts())
       associate (fields => self%state%fields)
          fields%motion(motion_approach) = model%nearest_approach(model%initial_gap)
          ! Without tractions, displacements are those by motions.

@@ -150,11 +150,13 @@ contains
                     'surface', default='archard', choices='archard work')
       call keys%add('wear', 'coefficient', kind_real, 'needed; the gaps grow after every cycle of steps with cycles', &
                     unit='length^2/force', above=0.0_wp)
-      call keys%add('wear', 'tolerance', kind_real, 'one cycle is computed for a block of cycles over which the pressure '// &
-                    'changes by less than this fraction of the normal force, and the wear by less than this fraction of all '// &
-                    'wear so far; the first cycle of a step wears alone', &
+      call keys%add('wear', 'tolerance', kind_real, 'largest error of worn area and depth against a computation of every '// &
+                    'cycle: one cycle in a block of as many as it allows is computed, and two after it, by which the block '// &
+                    'is corrected and, if it errs by more than half of this, taken again, shorter; the first cycle of a step '// &
+                    'wears alone', &
                     default='0.05', lower=1.0e-6_wp, upper=1.0_wp)
-      call keys%add('wear', 'block', kind_integer, 'cycles in a block; if omitted: as many as the tolerance allows', lower=1.0_wp, &
+      call keys%add('wear', 'block', kind_integer, 'largest number of cycles in a block; if omitted: as many as the '// &
+                    'tolerance allows. An error above the tolerance is warned of', lower=1.0_wp, &
                     upper=real(most_cycles, wp))
    end subroutine add_wear_keys
 
