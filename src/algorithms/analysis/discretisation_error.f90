@@ -223,7 +223,7 @@ contains
          end if
          values(:, i) = quantities_of(coarse)
          allowances(:, i) = interval_allowances(coarse)
-         if (estimate%doubt == '') estimate%doubt = difference_of_meshes(simulation, coarse)
+         if (estimate%doubt == '') estimate%doubt = trim(difference_of_meshes(simulation, coarse))
       end do
       if (estimate%doubt == '') return
       call add_unresolved(unresolved, all_quantities(simulation), estimate%doubt, 'use more nodes')
@@ -233,7 +233,7 @@ contains
    !> Why a coarser mesh says nothing about the discretisation error of a simulation; empty if it does.
    function difference_of_meshes(simulation, coarse) result(why)
       type(simulation_type), intent(in) :: simulation, coarse
-      character(:), allocatable :: why
+      character(len=160) :: why
       real(wp) :: part(2)
       integer :: patches(2), points
 

@@ -68,24 +68,25 @@ contains
       is_unresolved = any([(has_word(unresolved(i)%quantities, name), i=1, size(unresolved))])
    end function is_unresolved
 
-   !> The quantities that depend on all contact patches, separated by blanks.
+   !> The quantities that depend on all contact patches, separated by blanks and padded with them.
    function all_quantities(simulation) result(names)
       type(simulation_type), intent(in) :: simulation
-      character(:), allocatable :: names
+      character(len=200) :: names
 
       names = 'contact_half_width contact_length peak_pressure'
-      if (simulation%contact%model%tangential) names = names//' stick_ratio peak_shear dissipation'//tensions(simulation)
-      if (simulation%cycle_count > 0) names = names//' cycle_dissipation tangential_stiffness secant_stiffness loss_factor'
+      if (simulation%contact%model%tangential) names = trim(names)//' stick_ratio peak_shear dissipation'// &
+                                                        tensions(simulation)
+      if (simulation%cycle_count > 0) names = trim(names)//' cycle_dissipation tangential_stiffness secant_stiffness loss_factor'
    end function all_quantities
 
-   !> Names of the tensions of the bodies that have any, after blanks.
+   !> Names of the tensions of the bodies that have any, after blanks and padded with them.
    function tensions(simulation) result(names)
       type(simulation_type), intent(in) :: simulation
-      character(:), allocatable :: names
+      character(len=28) :: names
 
       names = ''
       if (has_interior(simulation%contact%model%scene%lower)) names = ' lower_tension'
-      if (has_interior(simulation%contact%model%scene%upper)) names = names//' upper_tension'
+      if (has_interior(simulation%contact%model%scene%upper)) names = trim(names)//' upper_tension'
    end function tensions
 
    !> The contact patch with the fewest nodes among those that matter: that carry a part of the normal force, or the peak pressure.
@@ -295,7 +296,7 @@ contains
          integer, intent(in) :: its_nodes
          real(wp), intent(in) :: its_width
 
-         names = names//' '//quantities
+         names = names//' '//trim(quantities)
          nodes = min(nodes, its_nodes)
          width = min(width, its_width)
       end subroutine add

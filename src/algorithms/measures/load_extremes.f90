@@ -185,13 +185,15 @@ contains
    pure subroutine widen(self, nodes, added)
       class(slip_range_type), intent(inout) :: self
       integer, intent(in) :: nodes, added
+      !> Beyond any slip; twice as much does not overflow.
+      real(wp), parameter :: beyond = 0.25_wp*huge(1.0_wp)
       real(wp), allocatable :: margin(:)
 
       if (.not. allocated(self%lowest)) then
-         allocate (self%lowest(nodes), source=huge(1.0_wp))
-         allocate (self%highest(nodes), source=-huge(1.0_wp))
+         allocate (self%lowest(nodes), source=beyond)
+         allocate (self%highest(nodes), source=-beyond)
       else if (added > self%added) then
-         allocate (margin(added - self%added), source=huge(1.0_wp))
+         allocate (margin(added - self%added), source=beyond)
          self%lowest = [margin, self%lowest, margin]
          self%highest = [-margin, self%highest, -margin]
       end if
@@ -286,7 +288,8 @@ contains
          real(wp), parameter :: least = tiny(1.0_wp)
 
          associate (place => model%arc(from:to) - x, half => 0.5_wp*model%width(from:to))
-            integral_over = sum(state%fields%shear(from:to)*log(max(abs(place + half), least)/max(abs(place - half), least)))
+            integral_over = sum(state%fields%shear(from:to)*(log(max(abs(place + half), least)) - &
+                                                             log(max(abs(place - half), least))))
          end associate
       end function integral_over
 

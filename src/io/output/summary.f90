@@ -188,22 +188,23 @@ contains
          character(:), allocatable :: words
 
          words = ''
-         if (field_named(fields, name_of_first) > 0) words = ', '//first//' '//with_place(name_of_first)
-         if (field_named(fields, name_of_second) > 0) words = words//', '//second//' '//with_place(name_of_second)
+         call add_extreme(words, first, name_of_first)
+         call add_extreme(words, second, name_of_second)
          if (words /= '') call add_line(text, label, over//words(3:))
       end subroutine add
 
-      !> An extreme with its place, and where in the load history it occurs.
-      function with_place(name) result(words)
-         character(*), intent(in) :: name
-         character(:), allocatable :: words
-         character(*), parameter :: moments(3) = [character(16) :: ' (step', ' (turning point', ' (row']
+      !> Add an extreme, if it exists, with its place, and where in the load history it occurs.
+      subroutine add_extreme(words, label, name)
+         character(:), allocatable, intent(inout) :: words
+         character(*), intent(in) :: label, name
+         character(*), parameter :: places(3) = [character(16) :: ' (step', ' (turning point', ' (row']
 
-         words = amount(fields, name)
+         if (field_named(fields, name) == 0) return
+         words = words//', '//label//' '//amount(fields, name)
          if (field_named(fields, name//'_x') > 0) words = words//' at x = '//amount(fields, name//'_x')
          if (field_named(fields, name//'_row') > 0) &
-            words = words//trim(moments(simulation%stretch()))//' '//amount(fields, name//'_row')//')'
-      end function with_place
+            words = words//trim(places(simulation%stretch()))//' '//amount(fields, name//'_row')//')'
+      end subroutine add_extreme
    end subroutine add_extremes
 
    !> Memory of the kernels or matrices, and time of assembly.
