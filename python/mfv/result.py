@@ -311,7 +311,7 @@ def _fault(groups: Mapping[str, Mapping[str, Field]]) -> str:
                 return f"{path}/{field} is not one number"
             if path in LISTS and len(shape) != 1:
                 return f"{path}/{field} is not a list"
-            if path == "error_estimate" and len(shape) != field.endswith(("companions", "companion_nodes")):
+            if path == "error_estimate" and len(shape) != ("_companion" in f"_{field}"):
                 return f"{path}/{field} is not {'a list' if not shape else 'one number'}"
             is_along_nodes = (path == "mesh" and shape) or path == "state" or (name == "steps" and field in groups["state"])
             if is_along_nodes and shape != nodes:

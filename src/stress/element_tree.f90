@@ -1,5 +1,5 @@
-!> Cauchy integrals over many elements of a surface: distant groups of them act through their moments (Barnes and Hut 1986; Greengard
-!> and Rokhlin 1987, J. Comput. Phys. 73, 325, for logarithmic potentials).
+!> Cauchy integrals over many elements of a surface: distant groups of them act through their moments (Barnes and Hut 1986;
+!> Greengard and Rokhlin 1987, J. Comput. Phys. 73, 325, for logarithmic potentials).
 !>
 !> With the traction sigma along the surface s, in the complex plane, and the middle c of a group of elements
 !>

@@ -25,8 +25,9 @@ contains
 
    !> Largest von Mises stress. The largest maxima of a coarse grid below the contact, graded towards the surface, and the most
    !> stressed of points below the middles of the loaded zones are refined by a simplex search (GSL), those on the surface along it.
-   !> A disk is searched to half its radius: the force that holds it acts at its centre. NaN where tractions end at a sharp edge, near
-   !> which stresses are unbounded. Zero without load; of the bulk stress, with `x` and `y` NaN, if the contact raises it nowhere.
+   !> A disk is searched to half its radius: the force that holds it acts at its centre. NaN where tractions end at a sharp edge,
+   !> near which stresses are unbounded. Zero without load; of the bulk stress, with `x` and `y` NaN, if the contact raises it
+   !> nowhere.
    type(largest_type) function largest_von_mises(interior) result(largest)
       type(interior_type), intent(in) :: interior
       integer, parameter :: starts = 6
@@ -63,8 +64,8 @@ contains
    end function largest_von_mises
 
    !> Starting points of the search below a contact of the length `length`, to the depth `reach`: arc lengths and depths `place` and
-   !> first steps `step`, shapes (2, points), with the von Mises stresses `found` there. They are the local maxima of a grid; and, of
-   !> several loaded zones, the most stressed of those under the middles, at the depth of the maximum under Hertz's pressure.
+   !> first steps `step`, shapes (2, points), with the von Mises stresses `found` there. They are the local maxima of a grid; and,
+   !> of several loaded zones, the most stressed of those under the middles, at the depth of the maximum under Hertz's pressure.
    subroutine find_starts(interior, length, reach, place, step, found)
       type(interior_type), intent(in) :: interior
       real(wp), intent(in) :: length, reach

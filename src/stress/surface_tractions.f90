@@ -400,8 +400,8 @@ contains
 
    !> Intervals next to each edge that are not used: two, or, without other edges nearby and without coupling, a fraction of
    !> many more, so that the remaining discretisation error vanishes with mesh refinement. They are fewer where the `values` at
-   !> the nodes have a maximum near the edge, as on a rounded punch or beside the tip of a wedge. On unequal intervals, of which many
-   !> are between, they are two, or one with a known discretisation error and the power 1/2.
+   !> the nodes have a maximum near the edge, as on a rounded punch or beside the tip of a wedge. On unequal intervals, of which
+   !> many are between, they are two, or one with a known discretisation error and the power 1/2.
    pure function skipped_intervals(patch, zone, values) result(skipped)
       type(patch_type), intent(in) :: patch
       type(zone_type), intent(in) :: zone

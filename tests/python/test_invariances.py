@@ -198,8 +198,9 @@ def test_mirror_image_bodies_exchanged_and_units_on_refined_meshes(seed: int) ->
         (stretched(case, 1024.0, 1.0 / 64.0).run(), converter(1024.0, 1.0 / 64.0)),
     ):
         found = differences(first, other, change, common="rigid" in case.upper, tolerance=1e-6)
-        # At the end of a repeated cycle round-off decides which nodes count as stuck (docs/theory.md, edges between nodes).
-        assert found.keys() <= {"summary/stick_ratio"}
+        # At the end of a repeated cycle round-off decides which nodes count as stuck (docs/theory.md, edges between nodes). The
+        # largest pressure is at the node nearest to a flat maximum.
+        assert found.keys() <= {"summary/stick_ratio", "observables/largest_pressure_x", "cycles/largest_pressure_x"}
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -61,7 +61,7 @@ def test_equal_widths_give_what_the_half_plane_gives(coupling: str, poisson_rati
     matrix = solved(half_plane(plane.mesh.x, plane.mesh.width, 1.0, poisson_ratio, 1.0, mean=False), coupling)
     given = dict(read_off(matrix))
     for name, expected in read_off(plane):
-        scale = P if name.endswith("force") else 1.0 if "patch_shift" in name or "centre" in name else np.max(np.abs(expected))
+        scale = P if name.endswith("force") else 1.0 if "patch_shift" in name or "centre" in name else np.nanmax(np.abs(expected))
         if name.endswith("_force_work"):  # round-off where the force is constant
             scale = np.max(plane.cycles.dissipation)
         np.testing.assert_allclose(given[name], expected, atol=tolerance * float(scale), rtol=0.0, err_msg=name)

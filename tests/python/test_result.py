@@ -41,6 +41,13 @@ def pressed() -> mfv.Result:
     return cylinder(PRESS, mfv.Step(rotation=1.0e-6)).run(check=True)
 
 
+@pytest.fixture(scope="module")
+def watched() -> mfv.Result:
+    """The cylinder sheared to and fro, with the stress beside it in every row of the history."""
+    units = {"length_unit": "mm", "force_unit": "N"}
+    return cylinder(*TO_AND_FRO, coupling="full", output=mfv.Output(stress_at=0.02), **units).run(check=True)
+
+
 def test_panels_of_cycles_need_cycles(pressed: mfv.Result) -> None:
     for panel in (mfv.plot.nonlinear_loop, mfv.plot.friction_work, mfv.plot.cycles_figure):
         with pytest.raises(ValueError, match="this result has no cycles; give a step cycles="):
@@ -173,6 +180,7 @@ PANELS: dict[str, tuple[str, str, str]] = {
     "nonlinear_loop": ("cycled", "non-linear shift $U - Q/k$ [mm]", "tangential force $Q$ [N/mm]"),
     "friction_work": ("cycled", "position $x$ [mm]", "dissipation per cycle and area $d$ [N/mm]"),
     "turning": ("pressed", r"rotation $\varphi$ [rad]", "moment $M$"),
+    "tension": ("watched", "load segment", r"stress along the surface $\sigma$ [N/mm$^2$]"),
     "rolling": ("pressed", "rolled distance $s$", r"sliding $U + h\varphi$"),
 }
 

@@ -21,17 +21,17 @@ SLIPPERY = 1.0e-3
 
 #: Names of quantities and the attribute of `Scales` that is their scale; the first that matches counts.
 _TABLE = [
-    (r".*(left|right)|contact_centre.*|.*_edge|.*tension_x|x|contact_length|slip_zone.*", "half_width"),
-    (r"stick_ratio.*|edge_stick_ratio|patch_shift.*|change|loss_factor|creepage_number", "one"),
+    (r".*(left|right)|contact_centre.*|.*_edge|.*(tension|pressure|von_mises)_[xy]|x|contact_length|slip_zone.*", "half_width"),
+    (r".*stick_ratio.*|patch_shift.*|change|loss_factor|creepage_number", "one"),
     (r"dissipation_number", "friction_squared"),
     (r"tangential_force|force_amplitude", "friction_force"),
     (r"normal_force", "normal_force"),
     (r"moment", "moment"),
-    (r"shift|shift_drift|shift_amplitude|slip|.*tangential_displacement", "shift"),
+    (r"shift|shift_drift|shift_amplitude|slip|largest_slip_range|.*tangential_displacement", "shift"),
     (r"approach|approach_drift|gap|.*normal_displacement", "approach"),
     (r"rotation|rotation_drift", "rotation"),
-    (r"shear|peak_shear|.*tension|.*_bulk_stress", "shear"),
-    (r"pressure|peak_pressure", "pressure"),
+    (r"shear|peak_shear|largest_shear|.*tension|.*_bulk_stress", "shear"),
+    (r"pressure|peak_pressure|largest_pressure|.*von_mises", "pressure"),
     (r".*_contraction.*", "contraction"),
     (r"friction_work", "work_per_length"),
     (r"dissipation|.*cycle_dissipation|.*_work", "work"),

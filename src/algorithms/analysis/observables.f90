@@ -82,7 +82,7 @@ module mfv_observables
                                 row_type('largest_upper_tension_x', 'length', 'where it is: x'), &
                                 row_type('largest_upper_tension_row', '1', row_meaning), &
                                 row_type('largest_pressure', 'force/length^2', 'largest pressure'//over), &
-                                row_type('largest_pressure_x', 'length', 'where it is: x'), &
+                                row_type('largest_pressure_x', 'length', 'where it is: x of a node'), &
                                 row_type('largest_pressure_row', '1', row_meaning), &
                                 row_type('largest_shear', 'force/length^2', 'largest size of the shear traction'//over), &
                                 row_type('largest_shear_x', 'length', 'where it is: x'), &

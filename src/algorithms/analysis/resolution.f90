@@ -68,15 +68,17 @@ contains
       is_unresolved = any([(has_word(unresolved(i)%quantities, name), i=1, size(unresolved))])
    end function is_unresolved
 
-   !> The quantities that depend on all contact patches, separated by blanks and padded with them.
+   !> The quantities that depend on all contact patches, separated by blanks and padded with them. `extremes`: all largest_... and
+   !> smallest_...; `turning_points`: all ..._loading, ..._reversal and ..._return, and amplitudes.
    function all_quantities(simulation) result(names)
       type(simulation_type), intent(in) :: simulation
-      character(len=200) :: names
+      character(len=240) :: names
 
-      names = 'contact_half_width contact_length peak_pressure'
-      if (simulation%contact%model%tangential) names = trim(names)//' stick_ratio peak_shear dissipation'// &
-                                                        tensions(simulation)
-      if (simulation%cycle_count > 0) names = trim(names)//' cycle_dissipation tangential_stiffness secant_stiffness loss_factor'
+      names = 'contact_half_width contact_length peak_pressure approach extremes'
+      if (simulation%contact%model%tangential) names = trim(names)//' shift stick_ratio peak_shear dissipation'// &
+                                                       tensions(simulation)
+      if (simulation%cycle_count > 0) names = trim(names)//' cycle_dissipation tangential_stiffness '// &
+                                              'secant_stiffness loss_factor turning_points'
    end function all_quantities
 
    !> Names of the tensions of the bodies that have any, after blanks and padded with them.
@@ -229,7 +231,7 @@ contains
       interval = contact_interval(simulation%contact%model, simulation%contact%state)
       call add_work(simulation%slip, 'dissipation')
       ! The tension behind a contact grows with the root of its slip zone.
-      call add_zones(simulation%slip, 'stick_ratio peak_shear'//tensions(simulation))
+      call add_zones(simulation%slip, 'stick_ratio peak_shear extremes'//tensions(simulation))
       if (.not. simulation%slip%is_coarse_now(interval)) then
          call add_edge(-1)
          call add_edge(1)
@@ -239,7 +241,7 @@ contains
             call add_work(cycle%slip(), 'cycle_dissipation loss_factor nonlinear_shift')
             call add_work(cycle%first_slip, 'first_cycle_dissipation')
             call add_zones(cycle%loading_slip, 'stick_ratio_loading')
-            call add_zones(cycle%reversal%slip, 'stick_ratio_reversal')
+            call add_zones(cycle%reversal%slip, 'stick_ratio_reversal extremes')
             call add_zones(cycle%return%slip, 'stick_ratio_return')
          end associate
       end if

@@ -29,10 +29,10 @@ contains
 
    !> tangent(i, j): derivative of the force of motion i with respect to motion j (mfv_motions), shape (motions, motions),
    !> motions from 2 to motion_count; the others are fixed. `direction`: of the next motions, shape (motions), of any length;
-   !> friction acts, if the scene has any. If omitted, statuses are unchanged, but nodes that were pressed without friction stick, if
-   !> the scene has friction: whatever small motion follows, no shear reaches the friction limit at once. Zero without contact and, for
-   !> the shift, without friction. Errors MFV_BAD_ARGUMENT: singular contact, or a direction of zeros; others: the run in this
-   !> direction fails.
+   !> friction acts, if the scene has any. If omitted, statuses are unchanged, but nodes that were pressed without friction stick,
+   !> if the scene has friction: whatever small motion follows, no shear reaches the friction limit at once. Zero without contact
+   !> and, for the shift, without friction. Errors MFV_BAD_ARGUMENT: singular contact, or a direction of zeros; others: the run in
+   !> this direction fails.
    subroutine find_tangent(path, tangent, error, direction)
       type(contact_path_type), intent(in) :: path
       real(wp), intent(out) :: tangent(:, :)

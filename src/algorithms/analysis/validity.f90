@@ -88,8 +88,8 @@ contains
                     to_text(100.0_wp*sin(min(angle, 90.0_wp)*pi/180.0_wp), 2)//' % (sine) of the tractions')
    end subroutine check_angle
 
-   !> Contacts that are not small: bodies deform as if their strains and displacements did not change their shapes. Strains are of the
-   !> order of the mean pressure over E* = 2 m: 0.4 a/R of a cylinder, half the slope of a wedge.
+   !> Contacts that are not small: bodies deform as if their strains and displacements did not change their shapes. Strains are of
+   !> the order of the mean pressure over E* = 2 m: 0.4 a/R of a cylinder, half the slope of a wedge.
    subroutine check_strain(simulation, scene, warnings)
       type(simulation_type), intent(in) :: simulation
       type(scene_type), intent(in) :: scene
