@@ -63,7 +63,7 @@ contains
       call check_slide(simulation, simulation%contact%model%scene, warnings)
       if (simulation%cycle_count > 0) call check_drift(simulation%cycles(simulation%cycle_count), warnings)
       largest = simulation%contact%certificate%largest()
-      if (largest > max(good, simulation%contact%model%scene%method%allowed_residual())) &
+      if (largest > good) &
          call add_text(warnings, 'the largest relative residual is '//to_text(largest, 2)// &
                        ', well above rounding errors: results may be inaccurate; /certificate in the result file lists the '// &
                        'residuals by name')

@@ -79,7 +79,6 @@ module mfv_scene
       real(wp) :: accuracy = 0.0_wp
    contains
       procedure :: takes_accuracy
-      procedure :: allowed_residual
       procedure :: allowed_in_friction
    end type method_type
 
@@ -175,15 +174,6 @@ contains
 
       takes_accuracy = self%algorithm == algorithm_mfv .and. (self%stepping == stepping_auto .or. self%stepping == stepping_leap)
    end function takes_accuracy
-
-   !> Residual of the certificate that large increments may leave; 0 by events.
-   elemental real(wp) function allowed_residual(self)
-      class(method_type), intent(in) :: self
-      real(wp), parameter :: negligible = 1.0e-2_wp
-
-      allowed_residual = 0.0_wp
-      if (self%stepping == stepping_leap) allowed_residual = negligible*self%accuracy
-   end function allowed_residual
 
    !> The tolerance of the tractions for an increment with nonlinear friction: the given one, else that of the accuracy, if any.
    elemental real(wp) function allowed_in_friction(self) result(tolerance)

@@ -195,6 +195,11 @@ contains
 
       found = .not. (progress%increment%singular .or. progress%increment%diverges)
       if (found) return
+      if (progress%increment%singular .and. path%system%gave_up) then
+         call path%end_here(MFV_NOT_CONVERGED, 'the iteration of the linear solver does not converge; use linear_solver='// &
+                            '''reduced'' in &solver', error)
+         return
+      end if
       if (progress%increment%singular) then
          call path%no_continuation('the linear system is singular', error)
          return
@@ -238,11 +243,11 @@ contains
                                    to_text(path%certificate%largest())//')', error)
    end subroutine advance
 
-   !> The largest admissible residual of the certificate. In large increments the linear solver may be less accurate.
+   !> The largest admissible residual of the certificate.
    pure real(wp) function most_residual(path)
       class(contact_path_type), intent(in) :: path
 
-      most_residual = max(failed_certificate, tolerance_factor*path%system%tolerance, path%model%scene%method%allowed_residual())
+      most_residual = max(failed_certificate, tolerance_factor*path%system%tolerance)
    end function most_residual
 
    !> Change the statuses of the nodes whose inequalities are violated first, together.
