@@ -1,5 +1,6 @@
 !> The option --advise of mfv_run.
 module mfv_advise_case
+   use, intrinsic :: iso_c_binding, only: c_int
    use mfv_advice, only: advice_count, advice_type, advise
    use mfv_advice_text, only: read_wanted_error, read_wanted_quantities, write_advice
    use mfv_case, only: case_type
@@ -9,7 +10,7 @@ module mfv_advise_case
    use mfv_kinds, only: wp
    use mfv_output, only: print_text
    use mfv_process, only: catch_interrupts, use_one_thread
-   use mfv_status, only: MFV_COMPLETE
+   use mfv_status, only: MFV_COMPLETE, MFV_INTERRUPTED, status_exit_code
    use mfv_strings, only: shortened
    use mfv_terminal, only: terminal_observer_type
    implicit none
@@ -34,7 +35,7 @@ contains
       call read_arguments(usage, path, wanted_error, wanted)
       call read_case_file(path, case, error)
       if (allocated(error)) call fail(error)
-      call catch_interrupts()
+      call catch_interrupts(int(status_exit_code(MFV_INTERRUPTED), c_int))
       call observer%start()
       call observer%begin_work('coarse meshes')
       call advise(case%scene, wanted_error, wanted, advice, observer)

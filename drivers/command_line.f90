@@ -7,13 +7,18 @@ module mfv_command_line
    use mfv_strings, only: add_text, list_of_words, find_nearest_name, shortened, string_type
    implicit none
    private
-   public :: get_argument, has_argument, refuse, refuse_option, fail, end_program
+   public :: get_argument, has_argument, refuse, refuse_option, fail, end_program, end_at_once
 
    interface
       subroutine c_exit(code) bind(C, name='exit')
          import :: c_int
          integer(c_int), value :: code
       end subroutine c_exit
+
+      subroutine c_exit_at_once(code) bind(C, name='_exit')
+         import :: c_int
+         integer(c_int), value :: code
+      end subroutine c_exit_at_once
    end interface
 
 contains
@@ -57,6 +62,14 @@ contains
       flush (error_unit)
       call c_exit(int(code, c_int))
    end subroutine end_program
+
+   !> The same without exit handlers: that of a shared OpenBLAS waits forever for threads that have no memory.
+   subroutine end_at_once(code)
+      integer, intent(in) :: code
+
+      flush (error_unit)
+      call c_exit_at_once(int(code, c_int))
+   end subroutine end_at_once
 
    !> End `program` because of wrong arguments: print why, and its `usage` (lines of text).
    subroutine refuse(program, usage, why)

@@ -3,11 +3,11 @@
 module mfv_output
    use, intrinsic :: iso_c_binding
    use, intrinsic :: iso_fortran_env, only: error_unit
-   use mfv_process, only: begin_streams
+   use mfv_process, only: begin_streams, find_small_limit
    use mfv_safe_file, only: write_all
-   use mfv_status, only: MFV_FILE_ERROR, status_exit_code
+   use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR, status_exit_code
    use mfv_version, only: library_version
-   use mfv_command_line, only: end_program, has_argument
+   use mfv_command_line, only: end_at_once, end_program, has_argument
    implicit none
    private
    public :: begin_program, print_text, print_line
@@ -15,9 +15,10 @@ module mfv_output
 contains
 
    !> Open the standard streams (process.c) and answer --help, -h and --version, wherever they are among the arguments; the program
-   !> then ends. `usage`, `help`: lines of text.
+   !> then ends. It also ends, with a message, where limits of the process are too small. `usage`, `help`: lines of text.
    subroutine begin_program(program, usage, help)
       character(*), intent(in) :: program, usage(:), help(:)
+      character(:), allocatable :: why
 
       call begin_streams()
       if (has_argument('--help') .or. has_argument('-h')) then
@@ -25,7 +26,10 @@ contains
       else if (has_argument('--version')) then
          call print_line(program//' '//library_version)
       else
-         return
+         call find_small_limit(why)
+         if (.not. allocated(why)) return
+         write (error_unit, '(a)') program//': '//why
+         call end_at_once(status_exit_code(MFV_INPUT_ERROR))
       end if
       call end_program(0)
    end subroutine begin_program

@@ -10,6 +10,7 @@
 #endif
 #include <signal.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -23,6 +24,36 @@ void mfv_begin_streams(void) {
   for (descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; descriptor++)
     if (fcntl(descriptor, F_GETFD) < 0 && errno == EBADF) open("/dev/null", descriptor == STDERR_FILENO ? O_WRONLY : O_RDONLY);
   signal(SIGXFSZ, SIG_IGN);
+}
+
+#ifdef __ELF__
+void *blas_memory_alloc(int position) __attribute__((weak));
+void blas_memory_free(void *memory) __attribute__((weak));
+#endif
+
+/* Write why the limits of the process are too small into `message` of the size `size`, and return 1; 0 if they suffice. With less memory
+   OpenBLAS waits for it forever, and with a smaller stack the program would crash. Afterwards OpenBLAS has its memory, before the
+   mesh takes the rest. */
+int mfv_find_small_limit(char *message, int size) {
+  static const struct {
+    int resource;
+    rlim_t least; /* bytes */
+    const char *name, *option;
+  } limits[] = {{RLIMIT_STACK, (rlim_t)1 << 20, "stack size", "-s"},
+                {RLIMIT_AS, (rlim_t)1 << 28, "virtual memory", "-v"},
+                {RLIMIT_DATA, (rlim_t)1 << 28, "data segment", "-d"}};
+  struct rlimit limit;
+  size_t i;
+  for (i = 0; i < sizeof limits / sizeof *limits; i++) {
+    if (getrlimit(limits[i].resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur >= limits[i].least) continue;
+    snprintf(message, (size_t)size, "the limit of the %s (ulimit %s) is %lu kB; at least %lu kB are needed: raise it", limits[i].name,
+             limits[i].option, (unsigned long)(limit.rlim_cur >> 10), (unsigned long)(limits[i].least >> 10));
+    return 1;
+  }
+#ifdef __ELF__
+  if (blas_memory_alloc != NULL && blas_memory_free != NULL) blas_memory_free(blas_memory_alloc(0));
+#endif
+  return 0;
 }
 
 /* One thread for OpenBLAS: a second one slows small systems down and changes the last digits of sums. The programs set this
@@ -79,15 +110,29 @@ __attribute__((constructor(101))) static void start_process(void) {
 }
 #endif
 
-static volatile sig_atomic_t interrupted;
+static volatile sig_atomic_t interrupted, saves, exit_code;
 
-static void handle_signal(int number) { interrupted = number; }
+/* Without a result to save the program ends at once, as it does after a second signal. */
+static void handle_signal(int number) {
+  static const char message[] = "interrupted before the first increment; no result is written\n";
+  if (!saves) {
+    if (write(STDERR_FILENO, message, sizeof message - 1) < 0) _exit(exit_code);
+    _exit(exit_code);
+  }
+  interrupted = number;
+  signal(number, SIG_DFL);
+}
 
-/* Have Ctrl-C and termination requests end the run at its next increment, with its result written. */
-void mfv_catch_interrupts(void) {
+/* Have Ctrl-C and termination requests end the program: with the exit code `code` until there is a result to save, then at the next
+   increment of the run, with its result written. */
+void mfv_catch_interrupts(int code) {
+  exit_code = code;
   signal(SIGINT, handle_signal);
   signal(SIGTERM, handle_signal);
 }
+
+/* From now on there is a result to save. */
+void mfv_begin_saving(void) { saves = 1; }
 
 /* Whether the program has been asked to end. */
 int mfv_is_interrupted(void) { return interrupted != 0; }

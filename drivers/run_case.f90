@@ -1,5 +1,6 @@
 !> Solve a case: common to mfv_run and mfv_conventional.
 module mfv_run_case
+   use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: error_unit
    use mfv_clock, only: seconds_now
    use mfv_command_line, only: end_program, fail
@@ -40,7 +41,7 @@ contains
       if (.not. allocated(error)) call contact%keep_checkpoints(error)
       if (allocated(error)) call fail(error)
       if (resume) call continue_run(contact)
-      call catch_interrupts()
+      call catch_interrupts(int(status_exit_code(MFV_INTERRUPTED), c_int))
       call observer%start()
       call contact%run(observer)
       call observer%clear()

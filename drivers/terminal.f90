@@ -6,7 +6,7 @@ module mfv_terminal
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: wp
    use mfv_observer, only: observer_type
-   use mfv_process, only: is_interrupted
+   use mfv_process, only: begin_saving, is_interrupted
    use mfv_strings, only: to_text
    implicit none
    private
@@ -58,6 +58,7 @@ contains
       logical, intent(out) :: stop_wanted
       real(wp) :: now
 
+      if (self%work == '') call begin_saving()
       stop_wanted = is_interrupted() /= 0
       if (.not. self%visible) return
       now = seconds_now()

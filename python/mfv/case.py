@@ -322,8 +322,9 @@ class Case:
         (and moment) with respect to approach, shift (and rotation).
 
         The tangent of contact and friction depends on the direction of motion: `direction` has a number for every motion, such
-        as (0, 1) for a shift to the right; if omitted, the direction of the last step is used. `motions`: 2, 3 with the
-        rotation, or 5 with the bulk stresses. Raises BadArgument if the contact does not determine it.
+        as (0, 1) for a shift to the right; if omitted, the direction of the last step is used, and nodes that were pressed without
+        friction stick if the scene has friction. `motions`: 2, 3 with the rotation, or 5 with the bulk stresses. Raises
+        BadArgument if the contact does not determine it.
         """
         towards = None
         if direction is not None:

@@ -96,7 +96,7 @@ Panel = Callable[[Result, "Axes | None", "int | None"], Axes]
 def figure(result: Result, step: int | None = None) -> Figure:
     """A picture of a result: pressure; shear traction, or without friction the deformed surfaces; tangential force over shift,
     with cycles also over the non-linear shift, or, without tangential force, moment over rotation; after rolling, sliding over
-    rolled distance.
+    rolled distance; with `stress_at` the largest tension over the load history.
 
     `step`: draw `result.steps[step - 1]`, not the last state. Raises ValueError if it does not exist. For a contact with
     several patches the panels show all patches, the patch with the largest load, and the gap.
@@ -114,6 +114,8 @@ def figure(result: Result, step: int | None = None) -> Figure:
             panels.append(nonlinear_loop)
     elif _is_turned(result):
         panels.append(turning)
+    if _has_tension(result):
+        panels.append(tension)
     return _panels_in_a_row(panels, result, step, _caption(result, step))
 
 
@@ -129,6 +131,7 @@ def cycles_figure(result: Result) -> Figure:
         (turning, turns),
         (nonlinear_loop, "nonlinear_shift" in result.history),
         (friction_work, "friction_work" in result.cycles),
+        (tension, _has_tension(result)),
     ]
     panels = [panel for panel, is_there in drawable if is_there]
     if not panels:
@@ -147,7 +150,7 @@ def _panels_in_a_row(panels: Sequence[Panel], result: Result, step: int | None, 
     with matplotlib.rc_context(STYLE):
         picture = Figure(figsize=(len(panels) * PANEL_WIDTH, PANEL_HEIGHT + 1.0), layout="constrained")
         axes = picture.subplots(1, len(panels), squeeze=False)[0]
-        for panel, ax, letter in zip(panels, axes, "abcd"):
+        for panel, ax, letter in zip(panels, axes, "abcde"):
             panel(result, ax, step)
             ax.set_title(f"({letter})")
         picture.suptitle(_heading(result, step), fontsize=12, parse_math=False)
@@ -459,6 +462,29 @@ def rolling(result: Result, ax: Axes | None = None, step: int | None = None) -> 
     across = _label("rolled distance", "s", history.unit("rolled"))
     up = _label("sliding", r"U + h\varphi", history.unit("slid"))
     return _finished_curve(ax, result, step, ("rolled", "slid"), (across, up))
+
+
+def tension(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
+    """The largest tension along the surfaces, and the stress at the place `stress_at`, at the ends of the steps, rows and turning points
+    of the load history."""
+    ax = _axes(ax)
+    history = result.history
+    for body, color in (("lower", NUMBERS), ("upper", CLOSED_FORM)):
+        if f"{body}_tension" not in history:
+            continue
+        ends = np.isfinite(history[f"{body}_surface_stress"])
+        rows = np.arange(1, np.count_nonzero(ends) + 1)
+        ax.plot(rows, history[f"{body}_tension"][ends], color=color, linewidth=1.0, label=f"{body} tension")
+        stress = history[f"{body}_surface_stress"][ends]
+        ax.plot(rows, stress, color=color, linewidth=0.8, linestyle=(0, (4, 3)), label=f"{body}, at a place")
+    ax.set_xlabel("load segment")
+    ax.set_ylabel(_label("stress along the surface", r"\sigma", result.state.unit("pressure")))
+    return ax
+
+
+def _has_tension(result: Result) -> bool:
+    """Whether the history has stresses along the surfaces."""
+    return "lower_surface_stress" in result.history or "upper_surface_stress" in result.history
 
 
 def _finished_curve(

@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 
 from . import _html
-from .errors import NotAResult
+from .errors import MfvError, NotAResult
 
 if TYPE_CHECKING:
     import xarray
@@ -36,11 +36,23 @@ COORDINATES = {
     "patches": ("patch",),
 }
 
+#: Groups of numbers, and of lists.
+NUMBERS = ("summary", "certificate", "sensitivity", "observables", "scene")
+LISTS = ("history", "cycles", "patches")
+
 #: The group of the stresses of mfv_stress.
 STRESS = "stress/"
 
 #: The dimension along which `Result.to_xarray` stacks the steps.
 STATE = "state"
+
+
+class NoQuantity(MfvError, KeyError):
+    """A group lacks a quantity."""
+
+
+class NoAttribute(MfvError, AttributeError):
+    """A group lacks a quantity."""
 
 
 class Field(NamedTuple):
@@ -70,6 +82,8 @@ class Group(Mapping[str, Values]):
     def _field(self, name: str) -> Field:
         if name not in self._fields and name in self._along():
             return self._coordinates[name]
+        if name not in self._fields:
+            raise NoQuantity(None, f"no quantity '{name}'; there are {', '.join(self) or 'none'}")
         return self._fields[name]
 
     def __getitem__(self, name: str) -> Values:
@@ -80,7 +94,7 @@ class Group(Mapping[str, Values]):
             raise AttributeError(name)
         if name in self:
             return self[name]
-        raise AttributeError(f"no quantity '{name}'; there are {', '.join(self) or 'none'}")
+        raise NoAttribute(None, f"no quantity '{name}'; there are {', '.join(self) or 'none'}")
 
     def __setattr__(self, name: str, value: object) -> None:
         if not name.startswith("_") and name in self:
@@ -271,7 +285,38 @@ def read(path: str | os.PathLike[str]) -> Result:
     missing += [f"the attribute {name}" for name in TEXTS if name not in texts]
     if missing:
         raise NotAResult(None, f"{path}: not a result file of MFV; missing: {', '.join(missing)}")
+    if fault := _fault(groups):
+        raise NotAResult(None, f"{path}: damaged: {fault}")
     return Result(groups, texts)
+
+
+def _fault(groups: Mapping[str, Mapping[str, Field]]) -> str:
+    """What is wrong with the values of the groups of a result; empty if they are numbers or arrays as they should be."""
+    nodes = np.shape(groups["mesh"]["x"].values) if "x" in groups["mesh"] else ()
+    if len(nodes) != 1:
+        return "mesh/x is not a list"
+    for path, group in groups.items():
+        name = path.partition("/")[0]
+        if name == "steps" and not path.removeprefix("steps/").isdecimal():
+            return f"the group {path} is not that of a step"
+        if path in ("state", *(path for path in groups if path.startswith("steps/"))) and not {"pressure", "shear"} <= group.keys():
+            return f"{path} has no tractions"
+        for field, (values, *_) in group.items():
+            shape = np.shape(values)
+            if name not in (*GROUPS, *OPTIONAL_GROUPS, "steps", "stress"):
+                continue
+            if np.asarray(values).dtype.kind not in "biuf":
+                return f"{path}/{field} has no numbers"
+            if path in NUMBERS and shape:
+                return f"{path}/{field} is not one number"
+            if path in LISTS and len(shape) != 1:
+                return f"{path}/{field} is not a list"
+            if path == "error_estimate" and len(shape) != field.endswith(("companions", "companion_nodes")):
+                return f"{path}/{field} is not {'a list' if not shape else 'one number'}"
+            is_along_nodes = (path == "mesh" and shape) or path == "state" or (name == "steps" and field in groups["state"])
+            if is_along_nodes and shape != nodes:
+                return f"{path}/{field} has not one value for each node"
+    return ""
 
 
 def _values_of(dataset: h5py.Dataset) -> Values:

@@ -383,6 +383,7 @@ class Output(KeyGroup):
     error_estimate: bool | None = None
     sensitivity: bool | None = None
     checkpoint_minutes: float | None = None
+    stress_at: float | None = None
 
 
 class Scene(KeyGroup):

@@ -23,7 +23,7 @@ module mfv_contact
    use mfv_observer, only: observer_type
    use mfv_observables, only: observable_count, observables_of
    use mfv_result_fields, only: field_named, field_type, group_fields, result_attributes, result_groups
-   use mfv_refinement, only: refine_at_edges
+   use mfv_refinement, only: follow_patches, refine_at_edges
    use mfv_result_file, only: check_writable, resume_result, write_result
    use mfv_safe_file, only: delete_path
    use mfv_scene, only: most_cycles, scene_type, step_type
@@ -183,6 +183,7 @@ contains
          call set_error(error, self%simulation%outcome, self%simulation%message)
          return
       end if
+      if (allocated(self%case%stress_at)) self%simulation%stress_at = self%case%stress_at
       call find_case_checksum(self%case, self%simulation%contact%model, self%scene)
       self%is_made = .true.
    end subroutine begin
@@ -295,9 +296,14 @@ contains
       type(error_type), allocatable :: error
       logical :: keep_restart, interrupted
 
-      if (self%status() /= MFV_COMPLETE .or. .not. self%case%scene%mesh%refined) return
+      if (self%status() /= MFV_COMPLETE) return
+      if (.not. (self%case%scene%mesh%refined .or. self%case%scene%mesh%nodes_by_patches)) return
       if (present(observer)) call observer%begin_work('coarser meshes')
-      call refine_at_edges(self%case%scene, interrupted, observer)
+      if (self%case%scene%mesh%refined) then
+         call refine_at_edges(self%case%scene, interrupted, observer)
+      else
+         call follow_patches(self%case%scene, interrupted, observer)
+      end if
       if (interrupted) then
          self%simulation%outcome = MFV_INTERRUPTED
          self%simulation%message = 'interrupted before step 1, on the coarser meshes that locate the edges'
@@ -306,6 +312,7 @@ contains
       end if
       if (present(observer)) call observer%begin_work('')
       self%case%scene%mesh%refined = .false.
+      self%case%scene%mesh%nodes_by_patches = .false.
       keep_restart = self%simulation%keep_restart
       self%cache_type = cache_type()
       call self%begin(error)  ! also the outcome

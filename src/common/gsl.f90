@@ -39,27 +39,6 @@ module mfv_gsl
          real(c_double) :: gsl_sf_ellint_RF
       end function gsl_sf_ellint_RF
 
-      !> Points and weights of Gauss-Legendre quadrature.
-      function gsl_integration_glfixed_table_alloc(n) bind(C, name='gsl_integration_glfixed_table_alloc')
-         import :: c_ptr, c_size_t
-         integer(c_size_t), value :: n
-         type(c_ptr) :: gsl_integration_glfixed_table_alloc
-      end function gsl_integration_glfixed_table_alloc
-
-      subroutine gsl_integration_glfixed_table_free(table) bind(C, name='gsl_integration_glfixed_table_free')
-         import :: c_ptr
-         type(c_ptr), value :: table
-      end subroutine gsl_integration_glfixed_table_free
-
-      function gsl_integration_glfixed_point(a, b, i, x, weight, table) bind(C, name='gsl_integration_glfixed_point')
-         import :: c_double, c_int, c_ptr, c_size_t
-         real(c_double), value :: a, b
-         integer(c_size_t), value :: i
-         real(c_double), intent(out) :: x, weight
-         type(c_ptr), value :: table
-         integer(c_int) :: gsl_integration_glfixed_point
-      end function gsl_integration_glfixed_point
-
       function gsl_root_fsolver_alloc(kind) bind(C, name='gsl_root_fsolver_alloc')
          import :: c_ptr
          type(c_ptr), value :: kind

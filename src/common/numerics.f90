@@ -1,11 +1,12 @@
 !> Roots and quadrature by GSL, for plain procedures with an array of parameters.
 module mfv_numerics
-   use, intrinsic :: iso_c_binding, only: c_double, c_f_pointer, c_funloc, c_int, c_loc, c_ptr, c_size_t
+   use, intrinsic :: iso_c_binding, only: c_double, c_f_pointer, c_funloc, c_int, c_loc, c_ptr
    use mfv_gsl
    use mfv_kinds, only: wp
+   use mfv_quadrature, only: gauss_points
    implicit none
    private
-   public :: parametric_function, root_between, gauss_legendre, gauss_points
+   public :: parametric_function, root_between, gauss_legendre
 
    abstract interface
       !> A real function of one variable `x` and parameters.
@@ -73,21 +74,6 @@ contains
          integral = integral + weight(i)*f(x(i), parameters)
       end do
    end function gauss_legendre
-
-   !> Points and weights of Gauss-Legendre quadrature from `lower` to `upper`.
-   subroutine gauss_points(lower, upper, point, weight)
-      real(wp), intent(in) :: lower, upper
-      real(wp), intent(out) :: point(:), weight(:)
-      type(c_ptr) :: table
-      integer(c_int) :: code
-      integer :: i
-
-      table = gsl_integration_glfixed_table_alloc(size(point, kind=c_size_t))
-      do i = 1, size(point)
-         code = gsl_integration_glfixed_point(lower, upper, int(i - 1, c_size_t), point(i), weight(i), table)
-      end do
-      call gsl_integration_glfixed_table_free(table)
-   end subroutine gauss_points
 
    !> Callback of GSL: a module procedure, which needs no executable stack.
    function evaluate(x, params) result(value) bind(C, name='')

@@ -9,7 +9,7 @@
 module mfv_kernel_compliance
    use mfv_compliance, only: compliance_type
    use mfv_kinds, only: wp
-   use mfv_numerics, only: gauss_points
+   use mfv_quadrature, only: gauss_points
    implicit none
    private
    public :: kernel_compliance_type

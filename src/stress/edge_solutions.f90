@@ -5,14 +5,32 @@
 !> = 0 at the outermost node, with the asymptotes u^m and u^(m-1), u = j + offset. g + 2 m r k is the discrete traction for
 !> d^m with an edge offset + 2 r intervals outwards from the outermost node. They follow from the Wiener-Hopf factors of the
 !> symbol (docs/theory.md, edges between nodes).
+!>
+!> On unequal intervals, where displacements are means, the two solutions and that for d^(m+1) follow from the equations of the
+!> outermost intervals: the difference from the means of the exact tractions decays inwards.
 module mfv_edge_solutions
-   use mfv_kinds, only: wp
+   use mfv_kinds, only: pi, wp
+   use mfv_lapack, only: dgesv
+   use mfv_quadrature, only: gauss_points
    implicit none
    private
-   public :: solved_distance, discrete_over_exact, least_power, most_power
+   public :: solved_distance, discrete_over_exact, graded_solution_type, new_graded_solution, least_power, most_power
 
    !> Exponents for which the solutions are tabulated.
    real(wp), parameter :: least_power = 0.29_wp, most_power = 0.71_wp
+   !> Exact tractions are the distance to the power m - 1, m and m + 1.
+   integer, parameter :: terms = 3
+
+   !> Discrete tractions of the outermost unequal intervals; `unit`: their total width, length.
+   type :: graded_solution_type
+      private
+      real(wp) :: power = 0.5_wp, unit = 1.0_wp
+      !> Ends as distances from that of the contact; shapes (0:intervals), (intervals, terms).
+      real(wp), allocatable :: ends(:), discrete(:, :)
+   contains
+      procedure :: edge_beyond
+      procedure :: over_exact
+   end type graded_solution_type
 
 contains
 
@@ -124,5 +142,132 @@ contains
       end do
       where (.not. ratio > 0.5_wp) ratio = 1.0_wp
    end function discrete_over_exact
+
+   !> Solutions on unequal intervals of `widths`, outermost first, lengths; at least `terms`, of which the first few are used.
+   !> The exact tractions d^m leave the displacements -ln(r) p + (pi/2) q sgn(x) p unchanged, q = tan(pi (1/2 - m)), and the
+   !> discrete ones their means: the difference of both tractions has no resultant displacement (docs/theory.md).
+   type(graded_solution_type) function new_graded_solution(widths, power) result(self)
+      real(wp), intent(in) :: widths(:), power
+      integer, parameter :: most_intervals = 32
+      real(wp), allocatable :: matrix(:, :), differences(:, :)
+      integer, allocatable :: pivots(:)
+      integer :: i, n, code
+
+      n = min(size(widths), most_intervals)
+      self%power = power
+      self%unit = sum(widths(:n))
+      allocate (self%ends(0:n), self%discrete(n, terms), matrix(n, n), differences(n, terms), pivots(n))
+      self%ends = [(sum(widths(:i)), i=0, n)]/self%unit
+      call set_equations(self%ends, power, matrix, differences)
+      call dgesv(n, terms, matrix, n, pivots, differences, n, code)
+      if (code /= 0) differences = 0.0_wp
+      do i = 1, terms
+         self%discrete(:, i) = power_means(self%ends, power + i - 2) + differences(:, i)
+      end do
+   end function new_graded_solution
+
+   !> Means of x**power over intervals.
+   pure function power_means(ends, power) result(means)
+      real(wp), intent(in) :: ends(0:), power
+      real(wp) :: means(size(ends) - 1)
+      integer :: n
+
+      n = size(means)
+      means = (ends(1:)**(power + 1.0_wp) - ends(:n - 1)**(power + 1.0_wp))/((power + 1.0_wp)*(ends(1:) - ends(:n - 1)))
+   end function power_means
+
+   !> Mean displacements of the intervals: by uniform tractions on them, `matrix`; and by the exact tractions less their means,
+   !> `of_rest`. Their total length is 1, which determines the constant of the logarithm: it is small beside the entries.
+   subroutine set_equations(ends, power, matrix, of_rest)
+      real(wp), intent(in) :: ends(0:), power
+      real(wp), intent(out) :: matrix(:, :), of_rest(:, :)
+      integer, parameter :: points = 10
+      real(wp) :: t(points), weight(points), step, place(points), share(points), rest(points, terms), means(size(ends) - 1)
+      real(wp) :: twice(0:size(ends) - 1, 0:size(ends) - 1), once(0:size(ends) - 1, points)
+      integer :: i, j, n
+
+      n = size(means)
+      step = 0.5_wp*pi*tan(pi*(0.5_wp - power))
+      call gauss_points(0.0_wp, 1.0_wp, t, weight)
+      ! Roots and logarithms at both ends of an interval become smooth.
+      weight = 6.0_wp*t*(1.0_wp - t)*weight
+      t = t**2*(3.0_wp - 2.0_wp*t)
+      do j = 0, n
+         twice(:, j) = log_twice(ends - ends(j))
+      end do
+      do j = 1, n
+         associate (width => ends(j) - ends(j - 1))
+            matrix(:, j) = -(twice(1:, j - 1) - twice(:n - 1, j - 1) - twice(1:, j) + twice(:n - 1, j))/(ends(1:) - ends(:n - 1))
+            matrix(:, j) = matrix(:, j) + step*width*[(sign(min(abs(i - j), 1), i - j), i=1, n)]
+            place = ends(j - 1) + width*t
+            share = width*weight/sum(weight)
+            do i = 1, terms
+               rest(:, i) = place**(power + i - 2)*share
+               rest(:, i) = rest(:, i) - sum(rest(:, i))*share/width
+            end do
+            do i = 1, points
+               once(:, i) = log_once(ends - place(i))
+            end do
+            if (j == 1) of_rest = 0.0_wp
+            of_rest = of_rest - matmul(once(1:, :) - once(:n - 1, :), rest)/spread(ends(1:) - ends(:n - 1), 2, terms)
+            of_rest(j, :) = of_rest(j, :) - 2.0_wp*step/width*matmul(place, rest)
+         end associate
+      end do
+   end subroutine set_equations
+
+   !> Integrals of ln|x|: t ln|t| - t, and t^2/2 ln|t| - 3/4 t^2.
+   elemental real(wp) function log_once(t)
+      real(wp), intent(in) :: t
+
+      log_once = 0.0_wp
+      if (abs(t) > 0.0_wp) log_once = t*(log(abs(t)) - 1.0_wp)
+   end function log_once
+
+   elemental real(wp) function log_twice(t)
+      real(wp), intent(in) :: t
+
+      log_twice = 0.0_wp
+      if (abs(t) > 0.0_wp) log_twice = 0.5_wp*t**2*(log(abs(t)) - 1.5_wp)
+   end function log_twice
+
+   !> Distance of the edge outwards from the outer end of the outermost interval, length, from the tractions of three or more
+   !> intervals, outermost first. `found`: it is in this interval or the next one outwards, of the width `beyond`, length.
+   subroutine edge_beyond(self, tractions, beyond, distance, found)
+      class(graded_solution_type), intent(in) :: self
+      real(wp), intent(in) :: tractions(:), beyond
+      real(wp), intent(out) :: distance
+      logical, intent(out) :: found
+      real(wp) :: matrix(terms, terms), factors(terms)
+      integer :: pivots(terms), code
+
+      found = .false.
+      distance = 0.0_wp
+      if (size(self%discrete, 1) < terms) return
+      matrix = self%discrete(:terms, :)
+      factors = tractions(:terms)
+      call dgesv(terms, 1, matrix, terms, pivots, factors, terms, code)
+      if (code /= 0 .or. .not. factors(2) > 0.0_wp) return
+      distance = self%unit*factors(1)/(self%power*factors(2))
+      associate (outermost => self%unit*self%ends(1))
+         found = distance >= -outermost .and. distance <= max(outermost, beyond)
+      end associate
+   end subroutine edge_beyond
+
+   !> Discrete tractions over the means of the exact ones for an edge `distance` beyond the outer end of the outermost interval,
+   !> length, which it may cut; 1 for intervals farther inwards, where the end of the solution is near.
+   pure function over_exact(self, distance, intervals) result(ratio)
+      class(graded_solution_type), intent(in) :: self
+      real(wp), intent(in) :: distance
+      integer, intent(in) :: intervals
+      real(wp) :: ratio(intervals), exact(size(self%ends) - 1)
+      integer :: n
+
+      ratio = 1.0_wp
+      n = min(intervals, max(size(exact)/2, 1))
+      exact = power_means(max(self%ends + distance/self%unit, 0.0_wp), self%power)
+      exact(1) = exact(1)*max(self%ends(1) + min(distance/self%unit, 0.0_wp), 0.0_wp)/self%ends(1)
+      ratio(:n) = (self%discrete(:n, 2) + self%power*distance/self%unit*self%discrete(:n, 1))/max(exact(:n), tiny(1.0_wp))
+      where (.not. ratio > 0.5_wp) ratio = 1.0_wp
+   end function over_exact
 
 end module mfv_edge_solutions

@@ -6,7 +6,7 @@ module mfv_interior
    use mfv_body, only: body_type, shape_disk, shape_hole, shape_matrix
    use mfv_interior_circle, only: circle_load_type, longest_element, new_circle_load
    use mfv_interior_half_plane, only: half_plane_load_type, new_half_plane_load
-   use mfv_kinds, only: wp
+   use mfv_kinds, only: certified, wp
    use mfv_material, only: plane_strain
    use mfv_surface_tractions, only: find_traction_elements, traction_elements_type, zone_list_type
    implicit none
@@ -41,10 +41,14 @@ module mfv_interior
       real(wp) :: peak = 0.0_wp, length = 1.0_wp
       !> Bulk stress of a half-plane: a uniform sigma_xx, force/length^2.
       real(wp) :: bulk = 0.0_wp
+      !> Intervals about corners (mfv_corners) where tractions are not resolved, arc lengths, shape (2, corners).
+      real(wp), allocatable :: unresolved(:, :)
    contains
       procedure :: stress
       procedure :: all_stresses
       procedure :: surface_stress
+      procedure :: surface_von_mises
+      procedure :: zones
       procedure :: remote_stress
       procedure :: half_width
       procedure :: surface
@@ -55,6 +59,7 @@ module mfv_interior
       procedure :: knots
       procedure :: point_at
       procedure :: is_sheared
+      procedure :: is_unresolved
       procedure :: zone_edges
    end type interior_type
 
@@ -198,6 +203,41 @@ contains
       end if
    end function surface_stress
 
+   !> Von Mises stress at the surface, force/length^2, at an arc length from the origin of x: that of `stress` there, but quicker.
+   pure real(wp) function surface_von_mises(self, arc)
+      class(interior_type), intent(in) :: self
+      real(wp), intent(in) :: arc
+      complex(wp) :: traction
+      real(wp) :: along, values(4)
+
+      along = self%surface_stress(arc)
+      if (self%body%circular()) then
+         traction = self%circle%traction(arc/self%length)
+      else
+         traction = -conjg(self%half_plane%traction(arc/self%length))
+      end if
+      values([stress_xx, stress_yy, stress_xy]) = [along, real(traction, wp), aimag(traction)]
+      values(stress_zz) = self%out_of_plane*(along + real(traction, wp))
+      surface_von_mises = von_mises_stress(values)
+   end function surface_von_mises
+
+   !> Ends of the loaded parts of the surface, arc lengths from the origin of x, shape (2, parts).
+   pure function zones(self)
+      class(interior_type), intent(in) :: self
+      real(wp), allocatable :: zones(:, :)
+      logical :: begins(size(self%elements%from)), ends(size(self%elements%from))
+      integer :: n
+
+      n = size(begins)
+      begins(:1) = .true.
+      ends(n:) = .true.
+      begins(2:) = self%elements%from(2:) > self%elements%to(:n - 1)
+      ends(:n - 1) = begins(2:)
+      associate (left => pack(self%elements%from, begins), right => pack(self%elements%to, ends))
+         zones = self%length*transpose(reshape([left, right], [size(left), 2]))
+      end associate
+   end function zones
+
    !> Stresses as of `stress` far from the contact, force/length^2.
    pure function remote_stress(self) result(values)
       class(interior_type), intent(in) :: self
@@ -264,8 +304,17 @@ contains
    pure logical function is_sheared(self)
       class(interior_type), intent(in) :: self
 
-      is_sheared = any(abs(aimag(self%elements%first)) > 0.0_wp) .or. any(abs(aimag(self%elements%last)) > 0.0_wp)
+      is_sheared = any(max(abs(aimag(self%elements%first)), abs(aimag(self%elements%last))) > certified*self%peak)
    end function is_sheared
+
+   !> Whether the tractions at an arc length from the origin of x are not resolved.
+   pure logical function is_unresolved(self, arc)
+      class(interior_type), intent(in) :: self
+      real(wp), intent(in) :: arc
+
+      is_unresolved = .false.
+      if (allocated(self%unresolved)) is_unresolved = any(self%unresolved(1, :) < arc .and. arc < self%unresolved(2, :))
+   end function is_unresolved
 
    !> Edges of contact and stick zones, arc lengths from the origin of x, ascending, with equidistant points between them,
    !> about `most_between` in total.

@@ -18,13 +18,15 @@
 !>
 !> The traction of an element is linear in u = sin(theta - middle)/sin(half its angle), the coordinate on its chord; u is a
 !> sum of s and 1/s on the circle, so that the integrals are elementary. For elements that are short compared with their
-!> distance, power series in their length avoid cancellation.
+!> distance, power series in their length avoid cancellation; groups of distant elements act together (mfv_element_tree).
 !>
 !> Points are relative to z = 1 (theta = 0), not to the centre, to avoid cancellation close to the contact; Phi' occurs only
 !> times |z|^2 - 1, which vanishes on the surface.
 module mfv_interior_circle
+   use mfv_element_tree, only: element_tree_type, last_not_above, new_element_tree
    use mfv_kinds, only: pi, wp
    use mfv_logarithms, only: log_ratio
+   use mfv_quadrature, only: gauss_points
    implicit none
    private
    public :: circle_load_type, new_circle_load, longest_element
@@ -33,6 +35,8 @@ module mfv_interior_circle
    real(wp), parameter :: longest_element = 0.1_wp
    !> Terms of the power series, enough for the kind of real numbers.
    integer, parameter :: terms = int(0.25_wp*digits(1.0_wp)) + 2
+   !> Quadrature points of an element for its moments, exact for the highest moment that matters.
+   integer, parameter :: most_points = ceiling(0.25_wp*digits(1.0_wp))
 
    !> One element: its ends, radians; its ends and its middle relative to theta = 0; direction of the middle; sine of half its
    !> angle, and the chord of that; sigma_rr + i sigma_rtheta in the middle, and half of its change.
@@ -47,11 +51,15 @@ module mfv_interior_circle
       logical :: disk = .true.
       real(wp) :: kappa = 1.0_wp
       type(element_type), allocatable :: elements(:)
+      !> Where they begin, radians.
+      real(wp), allocatable :: from(:)
+      type(element_tree_type) :: tree
       !> Resultant F, and means N + i T of sigma_rr + i sigma_rtheta.
       complex(wp) :: force = 0.0_wp, mean = 0.0_wp
    contains
       procedure :: stress
       procedure :: surface_stress
+      procedure :: traction
    end type circle_load_type
 
 contains
@@ -85,7 +93,28 @@ contains
             self%mean = self%mean + e%mean*e%half/pi
          end associate
       end do
+      self%from = from
+      self%tree = tree_of(self%elements)
    end function new_circle_load
+
+   !> The elements in groups. sigma_rr + i sigma_rtheta is linear in u, see above.
+   pure type(element_tree_type) function tree_of(elements) result(tree)
+      type(element_type), intent(in) :: elements(:)
+      complex(wp), dimension(most_points, size(elements)) :: place, sigma, weight
+      complex(wp), parameter :: i = (0.0_wp, 1.0_wp)
+      real(wp) :: point(most_points), weights(most_points)
+      integer :: j, k
+
+      call gauss_points(-1.0_wp, 1.0_wp, point, weights)
+      do j = 1, size(elements)
+         associate (e => elements(j), middle => 0.5_wp*(elements(j)%from + elements(j)%to))
+            place(:, j) = [(from_origin_to(middle + e%half*point(k)), k=1, most_points)]
+            sigma(:, j) = e%mean + e%tilt*sin(e%half*point)/e%sine
+            weight(:, j) = i*(1.0_wp + place(:, j))*e%half*weights
+         end associate
+      end do
+      tree = new_element_tree(transpose(reshape([elements%first, elements%last], [size(elements), 2])), place, sigma, weight)
+   end function tree_of
 
    !> Integral of sin^2 phi from -half to half, from the chord of half.
    pure real(wp) function sum_of_squares(chord)
@@ -120,24 +149,27 @@ contains
       real(wp) :: stress(3)
       complex(wp), parameter :: i = (0.0_wp, 1.0_wp)
       real(wp), parameter :: tolerance = 8.0_wp*epsilon(1.0_wp)
-      complex(wp) :: zeta, z, plus, minus, slope, integral(2), derivative(2), potential, potential_slope, rest, force
+      complex(wp) :: zeta, z, plus, minus, slope, integral(2), derivative(2), potential, potential_slope, rest, force, distant(3)
       real(wp) :: beyond, kelvin
-      integer :: j
+      integer :: near(2, self%tree%leaves()), number, j, k
 
       zeta = cmplx(from_origin(1), from_origin(2), wp)
       z = 1.0_wp + zeta
       beyond = 2.0_wp*real(zeta, wp) + abs(zeta)**2
       if (abs(beyond) <= tolerance*(2.0_wp*abs(real(zeta, wp)) + abs(zeta)**2)) beyond = 0.0_wp
-      plus = 0.0_wp
-      minus = 0.0_wp
-      slope = 0.0_wp
-      do j = 1, size(self%elements)
-         call element_integrals(self%elements(j), self%disk, zeta, integral, derivative)
-         associate (e => self%elements(j))
-            plus = plus + e%mean*integral(1) + e%tilt*integral(2)
-            minus = minus + conjg(e%mean)*integral(1) + conjg(e%tilt)*integral(2)
-            slope = slope + e%mean*derivative(1) + e%tilt*derivative(2)
-         end associate
+      call self%tree%find_distant(zeta, distant, near, number)
+      plus = distant(1)
+      minus = distant(1) - 2.0_wp*i*distant(3)
+      slope = distant(2)
+      do k = 1, number
+         do j = near(1, k), near(2, k)
+            call element_integrals(self%elements(j), self%disk, zeta, integral, derivative)
+            associate (e => self%elements(j))
+               plus = plus + e%mean*integral(1) + e%tilt*integral(2)
+               minus = minus + conjg(e%mean)*integral(1) + conjg(e%tilt)*integral(2)
+               slope = slope + e%mean*derivative(1) + e%tilt*derivative(2)
+            end associate
+         end do
       end do
       plus = plus/(2.0_wp*pi*i)
       minus = minus/(2.0_wp*pi*i)
@@ -168,25 +200,28 @@ contains
    pure real(wp) function surface_stress(self, angle) result(stress)
       class(circle_load_type), intent(in) :: self
       real(wp), intent(in) :: angle
-      real(wp) :: from, to, growth, tilted, sum, radial, kelvin, part
-      integer :: j
+      real(wp) :: from, to, growth, sum, radial, kelvin, part
+      complex(wp) :: distant(3)
+      integer :: near(2, self%tree%leaves()), number, j, k
 
-      sum = 0.0_wp
+      call self%tree%find_distant(from_origin_to(angle), distant, near, number)
+      sum = real(distant(3), wp)
       radial = 0.0_wp
-      do j = 1, size(self%elements)
-         associate (e => self%elements(j))
-            from = 2.0_wp*sin(0.5_wp*(e%from - angle))
-            to = 2.0_wp*sin(0.5_wp*(e%to - angle))
-            growth = 0.0_wp
-            if (abs(from) > 0.0_wp) growth = -log(abs(from))
-            if (abs(to) > 0.0_wp) growth = growth + log(abs(to))
-            tilted = tilted_part(e, angle, growth)
-            sum = sum + aimag(e%mean)*growth + aimag(e%tilt)*tilted
-            if (angle >= e%from .and. angle <= e%to) then
-               part = sin(angle - 0.5_wp*(e%from + e%to))/e%sine
-               radial = min(radial, real(e%mean, wp) + part*real(e%tilt, wp))
-            end if
-         end associate
+      do k = 1, number
+         do j = near(1, k), near(2, k)
+            associate (e => self%elements(j))
+               from = 2.0_wp*sin(0.5_wp*(e%from - angle))
+               to = 2.0_wp*sin(0.5_wp*(e%to - angle))
+               growth = 0.0_wp
+               if (abs(from) > 0.0_wp) growth = -log(abs(from))
+               if (abs(to) > 0.0_wp) growth = growth + log(abs(to))
+               sum = sum + aimag(e%mean)*growth + aimag(e%tilt)*tilted_part(e, angle, growth)
+               if (angle >= e%from .and. angle <= e%to) then
+                  part = sin(angle - 0.5_wp*(e%from + e%to))/e%sine
+                  radial = min(radial, real(e%mean, wp) + part*real(e%tilt, wp))
+               end if
+            end associate
+         end do
       end do
       kelvin = 2.0_wp/(pi*(1.0_wp + self%kappa))*real(self%force*cmplx(cos(angle), -sin(angle), wp), wp)
       if (self%disk) then
@@ -195,6 +230,21 @@ contains
          stress = -2.0_wp/pi*sum + radial - 2.0_wp*real(self%mean, wp) + self%kappa*kelvin
       end if
    end function surface_stress
+
+   !> sigma_rr + i sigma_rtheta at an angle from theta = 0, radians; 0 outside all elements.
+   pure complex(wp) function traction(self, angle)
+      class(circle_load_type), intent(in) :: self
+      real(wp), intent(in) :: angle
+      integer :: j
+
+      traction = 0.0_wp
+      j = last_not_above(self%from, angle)
+      if (j == 0) return
+      associate (e => self%elements(j))
+         if (angle > e%to .or. .not. e%half > 0.0_wp) return
+         traction = e%mean + e%tilt*(sin(angle - 0.5_wp*(e%from + e%to))/e%sine)
+      end associate
+   end function traction
 
    !> The real part of the integral of u/(s - z) ds over an element at an angle on the circle, from that of 1/(s - z).
    pure real(wp) function tilted_part(element, angle, growth) result(tilted)

@@ -2,7 +2,7 @@
 module mfv_stress_search
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
    use mfv_interior, only: interior_type, von_mises_stress
-   use mfv_kinds, only: pi, wp
+   use mfv_kinds, only: certified, pi, wp
    use mfv_minimum, only: minimum_near, objective_type
    use mfv_surface_tractions, only: merged
    implicit none
@@ -23,18 +23,17 @@ module mfv_stress_search
 
 contains
 
-   !> Largest von Mises stress. The best points of a coarse grid below the contact, graded towards the surface, are refined by
-   !> a simplex search (GSL), those on the surface along it. A disk is searched to half its radius: the force that holds it acts
-   !> at its centre. NaN where tractions end at a sharp edge, near which stresses are unbounded. Zero without load; of the bulk
-   !> stress, with `x` and `y` NaN, if the contact raises it nowhere.
+   !> Largest von Mises stress. The largest maxima of a coarse grid below the contact, graded towards the surface, and the most
+   !> stressed of points below the middles of the loaded zones are refined by a simplex search (GSL), those on the surface along it.
+   !> A disk is searched to half its radius: the force that holds it acts at its centre. NaN where tractions end at a sharp edge, near
+   !> which stresses are unbounded. Zero without load; of the bulk stress, with `x` and `y` NaN, if the contact raises it nowhere.
    type(largest_type) function largest_von_mises(interior) result(largest)
       type(interior_type), intent(in) :: interior
-      integer, parameter :: across = 41, down = 21, starts = 6, neighbours = 2
-      real(wp), parameter :: shallowest = 1.0e-3_wp
-      real(wp) :: length, reach, place(2), value
-      real(wp), allocatable :: net(:, :), positions(:), depths(:)
+      integer, parameter :: starts = 6
+      real(wp), allocatable :: place(:, :), step(:, :), found(:)
+      real(wp) :: length, reach, arc, value
       type(search_type) :: search
-      integer :: best(2), i, j, start
+      integer :: best, start
 
       largest%value = von_mises_stress(interior%remote_stress())
       if (largest%value > 0.0_wp) largest%x = ieee_value(1.0_wp, ieee_quiet_nan)
@@ -49,28 +48,66 @@ contains
       end if
       reach = length
       if (interior%body%circular()) reach = min(reach, 0.5_wp*interior%body%radius)
-      positions = [(interior%middle() + length*((i - 1)/(across - 1.0_wp) - 0.5_wp), i=1, across)]
-      depths = [(reach*shallowest**((down - j)/(down - 1.0_wp)), j=1, down)]
+      call find_starts(interior, length, reach, place, step, found)
       search%interior = interior
       search%deepest = reach
-      allocate (net(across, down))
+      do start = 1, min(starts, size(found))
+         best = maxloc(found, dim=1)
+         if (.not. found(best) > 0.0_wp) exit
+         found(best) = -1.0_wp
+         call minimum_near(search, step(:, best), place(:, best), value)
+         call keep_larger(interior, largest, place(1, best), min(max(place(2, best), 0.0_wp), search%deepest))
+      end do
+      call refine_on_surface(interior, interior%knots(), .true., arc, value)
+      call keep_larger(interior, largest, arc, 0.0_wp)
+   end function largest_von_mises
+
+   !> Starting points of the search below a contact of the length `length`, to the depth `reach`: arc lengths and depths `place` and
+   !> first steps `step`, shapes (2, points), with the von Mises stresses `found` there. They are the local maxima of a grid; and, of
+   !> several loaded zones, the most stressed of those under the middles, at the depth of the maximum under Hertz's pressure.
+   subroutine find_starts(interior, length, reach, place, step, found)
+      type(interior_type), intent(in) :: interior
+      real(wp), intent(in) :: length, reach
+      real(wp), allocatable, intent(out) :: place(:, :), step(:, :), found(:)
+      integer, parameter :: across = 41, down = 21
+      real(wp), parameter :: shallowest = 1.0e-3_wp, hertz_depth = 0.35_wp
+      real(wp) :: net(across, down), positions(across), depths(down)
+      real(wp), allocatable :: zones(:, :)
+      integer :: i, j
+
+      positions = [(interior%middle() + length*((i - 1)/(across - 1.0_wp) - 0.5_wp), i=1, across)]
+      depths = [(reach*shallowest**((down - j)/(down - 1.0_wp)), j=1, down)]
+      allocate (place(2, 0), step(2, 0), found(0))
       do j = 1, down
          do i = 1, across
             net(i, j) = von_mises_at(interior, positions(i), depths(j))
          end do
       end do
-      do start = 1, starts
-         best = maxloc(net)
-         if (.not. net(best(1), best(2)) > 0.0_wp) exit
-         place = [positions(best(1)), depths(best(2))]
-         call minimum_near(search, [length/across, 0.2_wp*place(2)], place, value)
-         call keep_larger(interior, largest, place(1), min(max(place(2), 0.0_wp), search%deepest))
-         net(max(1, best(1) - neighbours):min(across, best(1) + neighbours), &
-             max(1, best(2) - neighbours):min(down, best(2) + neighbours)) = -1.0_wp
+      do j = 1, down
+         do i = 1, across
+            if (net(i, j) < maxval(net(max(1, i - 1):min(across, i + 1), max(1, j - 1):min(down, j + 1)))) cycle
+            call add([positions(i), depths(j)], [length/across, 0.2_wp*depths(j)], net(i, j))
+         end do
       end do
-      call refine_on_surface(interior, interior%knots(), .true., place(1), value)
-      call keep_larger(interior, largest, place(1), 0.0_wp)
-   end function largest_von_mises
+      zones = interior%zones()
+      if (size(zones, 2) == 1) return
+      do i = 1, size(zones, 2)
+         associate (width => zones(2, i) - zones(1, i), middle => 0.5_wp*(zones(1, i) + zones(2, i)))
+            if (.not. hertz_depth*width < reach) cycle
+            call add([middle, hertz_depth*width], [0.1_wp*width, 0.1_wp*width], von_mises_at(interior, middle, hertz_depth*width))
+         end associate
+      end do
+
+   contains
+
+      subroutine add(point, its_step, value)
+         real(wp), intent(in) :: point(2), its_step(2), value
+
+         place = reshape([place, point], [2, size(found) + 1])
+         step = reshape([step, its_step], [2, size(found) + 1])
+         found = [found, value]
+      end subroutine add
+   end subroutine find_starts
 
    !> Negative von Mises stress at an arc length and a depth, the objective of the search.
    real(wp) function negative_von_mises(self, x) result(value)
@@ -81,8 +118,9 @@ contains
    end function negative_von_mises
 
    !> Largest tension at the surface, force/length^2: at edges of contact and stick zones, where it has cusps, between them
-   !> and beside the contact (on a circle, everywhere). NaN where tractions are singular, at the end of a surface under shear;
-   !> `x` and `y` are NaN without any tension, and if the bulk stress is the largest.
+   !> and beside the contact (on a circle, everywhere), but not next to corners, where the pressure compresses the surface without
+   !> limit. NaN where tractions are singular, at the end of a surface under shear; `x` and `y` are NaN without any tension,
+   !> and if the bulk stress is the largest.
    type(largest_type) function largest_tension(interior) result(largest)
       type(interior_type), intent(in) :: interior
       real(wp) :: place, point(2), value
@@ -97,7 +135,7 @@ contains
          return
       end if
       call refine_on_surface(interior, candidates(interior), .false., place, value)
-      if (.not. value > largest%value) return
+      if (.not. value > largest%value + certified*interior%peak) return
       point = interior%point_at(place, 0.0_wp)
       largest = largest_type(value, point(1), point(2))
    end function largest_tension
@@ -154,9 +192,10 @@ contains
          real(wp), intent(in) :: arc
 
          if (von_mises) then
-            stress_at = von_mises_at(interior, arc, 0.0_wp)
+            stress_at = interior%surface_von_mises(arc)
          else
             stress_at = interior%surface_stress(arc)
+            if (interior%is_unresolved(arc)) stress_at = -huge(stress_at)
          end if
       end function stress_at
 

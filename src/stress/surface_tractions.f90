@@ -4,13 +4,15 @@
 !> friction |mu p| - |tau| (Hertz; Cattaneo and Mindlin, dissertation eqs. 3.1, 3.7). Both, divided by their roots, are
 !> smooth: they are interpolated linearly and extrapolated to the edges. Nodal values are corrected for the discretisation
 !> error where it is known (mfv_edge_solutions); those within two intervals of an edge are not used. On unequal intervals they are
-!> means, which are divided by mean roots, and near an edge its distance is less certain. Resultant forces (with radial normals:
+!> means, and so are those of the interpolated tractions. Resultant forces (with radial normals:
 !> and the moment) are those of the nodal values. The result is projected onto linear elements that are graded towards the edges;
 !> the projection preserves the integrals of tractions with smooth functions, on which stresses depend.
 module mfv_surface_tractions
-   use mfv_edge_solutions, only: discrete_over_exact, least_power, most_power, solved_distance
-   use mfv_kinds, only: pi, wp
+   use mfv_edge_solutions, only: discrete_over_exact, graded_solution_type, least_power, most_power, new_graded_solution, &
+                                 solved_distance
+   use mfv_kinds, only: certified, pi, wp
    use mfv_lapack, only: dgesv
+   use mfv_quadrature, only: gauss_points
    implicit none
    private
    public :: zone_list_type, traction_elements_type, find_traction_elements, merged, root_shift
@@ -58,7 +60,6 @@ module mfv_surface_tractions
    contains
       procedure :: contains_place
       procedure :: roots
-      procedure :: mean_roots
    end type zone_type
 
    !> One contact zone: the pressure; `limit` tau/p in slip zones, linear between them; in stick zones the remaining friction,
@@ -74,6 +75,8 @@ module mfv_surface_tractions
       real(wp) :: turn = 0.0_wp
       !> Whether the contact edges are ends of intervals, to be located between the nodes; and whether intervals are unequal.
       logical :: counted = .false., graded = .false.
+      !> Tractions up to this are zero, force/length^2.
+      real(wp) :: nothing = 0.0_wp
    contains
       procedure :: tractions
    end type patch_type
@@ -100,7 +103,8 @@ contains
 
       patch%turn = zones%turn
       patch%graded = maxval(width) - minval(width) > near*maxval(width)
-      call assign_nodes(arc, width, abs(pressure) > 0.0_wp .or. abs(shear) > 0.0_wp, zones, edges, sharp, owner)
+      patch%nothing = certified*max(maxval(abs(pressure)), maxval(abs(shear)))
+      call assign_nodes(arc, width, max(abs(pressure), abs(shear)) > patch%nothing, zones, edges, sharp, owner)
       fewest = max(zones%fewest_elements/max(size(edges, 2), 1), min(zones%fewest_elements, fewest_in_zone))
       allocate (done(size(edges, 2)), source=.false.)
       allocate (parts(size(edges, 2)))
@@ -169,7 +173,7 @@ contains
       real(wp) :: values(size(patch%arc))
       integer :: i
 
-      patch%has_ratio = all(patch%pressure > 0.0_wp)
+      patch%has_ratio = all(patch%pressure > patch%nothing)
       if (allocated(patch%stick)) deallocate (patch%stick)
       if (patch%has_ratio) then
          patch%stick = stick_zones(patch, zones)
@@ -221,8 +225,8 @@ contains
 
       n = size(patch%arc)
       patch%contact%known = patch%has_ratio .and. n >= fewest_nodes .and. patch%contact%power > least_power .and. &
-                            patch%contact%power < most_power .and. .not. patch%graded
-      if (.not. patch%has_ratio .or. patch%graded) return
+                            patch%contact%power < most_power
+      if (.not. patch%has_ratio) return
       if (abs(beta) > 0.0_wp) then
          slips = outside_stick_zones(patch)
          patch%contact%known = patch%contact%known .and. &
@@ -372,26 +376,32 @@ contains
       type(patch_type), intent(in) :: patch
       type(zone_type), intent(in) :: zone
       real(wp), intent(inout) :: values(:)
-      real(wp), parameter :: tolerance = 1.0e-9_wp
       integer, allocatable :: nodes(:)
+      type(graded_solution_type) :: solution
       real(wp) :: distance
       integer :: i, side
 
       do side = 1, 2
          if (.not. (zone%rooted(side) .and. zone%known(side))) cycle
          nodes = pack([(i, i=1, size(values))], zone%contains_place(patch%arc) .or. &
-                      (abs(patch%arc - zone%edge(side)) < 0.5_wp*patch%width .and. abs(values) > tolerance*maxval(abs(values))))
+                      (abs(patch%arc - zone%edge(side)) < 0.5_wp*patch%width .and. abs(values) > patch%nothing))
          if (side == 2) nodes = nodes(size(nodes):1:-1)
-         distance = (2*side - 3)*(zone%edge(side) - patch%arc(nodes(1)))/patch%width(nodes(1))
-         nodes = nodes(2:)
-         values(nodes) = values(nodes)/discrete_over_exact(zone%power(side), distance, size(nodes))
+         distance = (2*side - 3)*(zone%edge(side) - patch%arc(nodes(1)))
+         if (patch%graded) then
+            solution = new_graded_solution(patch%width(nodes), zone%power(side))
+            values(nodes) = values(nodes)/solution%over_exact(distance - 0.5_wp*patch%width(nodes(1)), size(nodes))
+         else
+            distance = distance/patch%width(nodes(1))
+            nodes = nodes(2:)
+            values(nodes) = values(nodes)/discrete_over_exact(zone%power(side), distance, size(nodes))
+         end if
       end do
    end subroutine correct_error
 
    !> Intervals next to each edge that are not used: two, or, without other edges nearby and without coupling, a fraction of
    !> many more, so that the remaining discretisation error vanishes with mesh refinement. They are fewer where the `values` at
-   !> the nodes have a maximum near the edge, as on a rounded punch or beside the tip of a wedge; not on unequal intervals, of which
-   !> many are between.
+   !> the nodes have a maximum near the edge, as on a rounded punch or beside the tip of a wedge. On unequal intervals, of which many
+   !> are between, they are two, or one with a known discretisation error and the power 1/2.
    pure function skipped_intervals(patch, zone, values) result(skipped)
       type(patch_type), intent(in) :: patch
       type(zone_type), intent(in) :: zone
@@ -399,20 +409,19 @@ contains
       integer :: skipped(2), nodes(size(values)), i, n, side
       real(wp) :: reach, nothing
       logical :: many
-      real(wp), parameter :: level = 1.0e-9_wp
 
-      skipped = 2
+      skipped = merge(1, 2, zone%known .and. .not. abs(zone%power - 0.5_wp) > 0.0_wp)
       if (patch%graded) return
       skipped = 0
       many = all(zone%known .or. .not. zone%rooted) .and. .not. any(abs(zone%power - 0.5_wp) > 0.0_wp)
       n = count(zone%contains_place(patch%arc))
       if (n == 0) return
       nodes(:n) = pack([(i, i=1, size(values))], zone%contains_place(patch%arc))
-      nothing = level*maxval(abs(values))
+      nothing = certified*maxval(abs(values))
       do side = 1, 2
          do i = 1, n - 1
             ! Nodes that slip beside the edge have values that vanish up to round-off.
-            if (size_of(i) > nothing .and. size_of(i + 1) <= size_of(i)*(1.0_wp + level)) exit
+            if (size_of(i) > nothing .and. size_of(i + 1) <= size_of(i)*(1.0_wp + certified)) exit
          end do
          reach = 2.0_wp*abs(patch%arc(nodes(i)) - zone%edge(side))/patch%width(nodes(i))
          skipped(side) = min(2, int(0.25_wp*reach))
@@ -454,11 +463,8 @@ contains
       end if
       zone%rest%x = pack(patch%arc, used)
       zone%rest%far_apart = patch%graded
-      if (patch%graded) then
-         zone%rest%value = pack(values, used)/zone%mean_roots(zone%rest%x, pack(patch%width, used))
-      else
-         zone%rest%value = pack(values, used)/zone%roots(zone%rest%x)
-      end if
+      zone%rest%value = pack(values, used)/zone%roots(zone%rest%x)
+      if (patch%graded) call fit_means(zone, pack(patch%width, used), pack(values, used))
 
    contains
 
@@ -508,26 +514,24 @@ contains
       end if
    end function root
 
-   !> Their means over an interval of a `width` about x, neglecting that one root may vary where the other one does.
-   elemental real(wp) function mean_roots(self, x, width)
-      class(zone_type), intent(in) :: self
-      real(wp), intent(in) :: x, width
-      real(wp) :: distance, near, far
-      integer :: side
+   !> Set the table of a zone so that the means over intervals of a `width` about its points are `values`, by iteration from the
+   !> values in the middle.
+   subroutine fit_means(zone, width, values)
+      type(zone_type), intent(inout) :: zone
+      real(wp), intent(in) :: width(:), values(:)
+      integer, parameter :: points = 4, iterations = 4
+      real(wp) :: t(points), weight(points), x(points, size(values)), traction(points, size(values))
+      integer :: i
 
-      mean_roots = 1.0_wp
-      associate (length => max(self%edge(2) - self%edge(1), tiny(1.0_wp)))
-         do side = 1, 2
-            if (.not. self%rooted(side)) cycle
-            distance = (3 - 2*side)*(x - self%edge(side))
-            near = max(distance - 0.5_wp*width, 0.0_wp)/length
-            far = max(distance + 0.5_wp*width, 0.0_wp)/length
-            associate (power => self%power(side) + 1.0_wp)
-               mean_roots = mean_roots*(far**power - near**power)/(power*width/length)
-            end associate
-         end do
-      end associate
-   end function mean_roots
+      call gauss_points(-0.5_wp, 0.5_wp, t, weight)
+      do i = 1, size(values)
+         x(:, i) = zone%rest%x(i) + width(i)*t
+      end do
+      do i = 1, iterations
+         traction = reshape(zone%roots([x])*zone%rest%continued([x]), shape(x))
+         zone%rest%value = zone%rest%value + (values - matmul(weight, traction))/zone%roots(zone%rest%x)
+      end do
+   end subroutine fit_means
 
    !> Linear interpolation in a table at ascending `x`, constant outside; 0 for an empty one.
    pure function at(self, x) result(values)
@@ -651,7 +655,7 @@ contains
       elements%first = values(:n - 1)
       elements%last = values(2:)
       elements%sharp = abs(values(1)) > 0.0_wp .or. abs(values(n)) > 0.0_wp
-      elements%singular = abs(aimag(values(1))) > 0.0_wp .or. abs(aimag(values(n))) > 0.0_wp
+      elements%singular = max(abs(aimag(values(1))), abs(aimag(values(n)))) > patch%nothing
    end subroutine find_elements
 
    !> Ends of the elements of a patch: its nodes and edges, and points between them so that no element is longer than half its

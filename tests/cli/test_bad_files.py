@@ -177,13 +177,14 @@ def test_paths_that_lead_to_no_file(folder: Path, path: str) -> None:
     says = NO_FILES[path]
     refused(run(RUN, "--check", path, cwd=folder), says)
     refused(run(CONVENTIONAL, path, cwd=folder), says)
+    key_says = says if path else "must not be empty"
     upper = f"&body shape='profile', file='{path}', rigid=.true. /\n".encode()
     (folder / "profile.nml").write_bytes(ELASTIC + upper + MESH + PRESS)
-    refused(run(RUN, "--check", "profile.nml", cwd=folder), f"profile.nml:2: &body 2 file='{path}': ", says)
+    refused(run(RUN, "--check", "profile.nml", cwd=folder), f"profile.nml:2: &body {'2 ' if path else ''}file='{path}': ", key_says)
     (folder / "matrix.nml").write_bytes(f"&body shape='matrix', file='{path}' /\n".encode() + DISK + PRESS)
-    refused(run(RUN, "--check", "matrix.nml", cwd=folder), f"matrix.nml:1: &body 1 file='{path}': ", says)
+    refused(run(RUN, "--check", "matrix.nml", cwd=folder), f"matrix.nml:1: &body {'1 ' if path else ''}file='{path}': ", key_says)
     (folder / "mu.nml").write_bytes(BODIES + f"&friction law='coulomb', mu_file='{path}' /\n".encode() + PRESS)
-    refused(run(RUN, "--check", "mu.nml", cwd=folder), f"mu.nml:4: &friction mu_file='{path}': ", says)
+    refused(run(RUN, "--check", "mu.nml", cwd=folder), f"mu.nml:4: &friction mu_file='{path}': ", key_says)
     if path:
         refused(run(STRESS, path, cwd=folder), says)
     points = run(STRESS, "result.h5", "--at", path, cwd=folder)

@@ -243,12 +243,13 @@ def faults_of_run(case: Path, text: str) -> Iterator[str]:
         with h5py.File(result) as file:
             for group in ("state", "history", "mesh"):
                 # The gap has no value beside a flat punch, nor has what is tangential where no shear is carried; edges are at
-                # the outermost nodes of zones only.
+                # the outermost nodes of zones only, stresses along the surface at the ends of steps.
                 yield from (
                     f"{group}/{name} is not finite (exit code {run.returncode}, {run.stderr.strip()})"
                     for name, dataset in file[group].items()
                     if not np.all(np.isfinite(dataset[()]))
                     and name not in ("gap", "initial_gap", "slip", "tangential_displacement", "contact_edge", "stick_edge")
+                    and not name.endswith(("_surface_stress", "_tension", "_tension_x"))
                 )
             certificate = file["certificate/largest"][()]
             if run.returncode == 0 and not certificate < 1e-9:

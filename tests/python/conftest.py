@@ -4,5 +4,6 @@ import importlib.util
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # the package truth
 if importlib.util.find_spec("mfv") is None:
     sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))

@@ -1,8 +1,7 @@
 """What must not change, or change in a known way, when a problem is stated differently: every output, not only tractions.
 
 Random contacts are solved twice: as they are, and as their mirror image, with the bodies exchanged, in other units, and so on. All
-fields of the groups below are compared; the tables say which ones change their sign, their side or their body. A field that a
-table does not name has to stay what it is.
+fields are compared; the tables of truth/fields.py say which ones change their sign, their side or their body.
 """
 
 from __future__ import annotations
@@ -13,35 +12,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from truth.fields import POSITIONS, TOLERANCE, converter, differences, exchanged, is_along_the_surface, mirrored, other_side
 
 import mfv
 
-GROUPS = ("state", "summary", "observables", "cycles", "patches")
 SEEDS = range(8)
-#: Of lengths, forces and stresses alike, relative to the scale of the quantity.
-TOLERANCE = 1.0e-8
-#: The largest tension is searched for, and is at a place where two branches of a curve meet.
-TENSION = 1.0e-6
-#: What depends on how a problem is solved, not on the problem.
-WORK = {
-    "events", "leaps", "linear_solves", "largest_residual", "steps_done", "cycle_change", "change", "status", "step",
-    "increment_traction_error", "increment_dissipation_error",
-}  # fmt: skip
-#: Numbers of nodes, which begin at the left end; and counts that an event at the very end of a step may change.
-NUMBERS = {"first_node", "last_node", "stick_nodes", "slip_nodes"}
-#: Quantities that change their sign in the mirror image.
-ODD = {
-    "tangential_force", "shift", "shear", "slip", "moment", "rotation", "tangential_displacement",
-    "upper_tangential_displacement", "contact_centre", "contact_centre_reversal", "contact_centre_return",
-    "patch_shift_loading", "patch_shift_reversal", "patch_shift_return", "creepage", "shift_drift", "rotation_drift",
-    "lower_tension_x", "upper_tension_x", "contact_edge", "stick_edge",
-}  # fmt: skip
-#: Positions: they change their sign when the picture is turned or mirrored, and move with the contact.
-POSITIONS = {
-    "contact_centre", "contact_centre_reversal", "contact_centre_return",
-    "lower_tension_x", "upper_tension_x", "contact_edge", "stick_edge",
-}  # fmt: skip
-SIDES = [("left", "right")]
 
 
 @dataclasses.dataclass
@@ -151,104 +126,6 @@ def strained(seed: int) -> Contact:
     return case
 
 
-def scale_of(name: str, half_width: float, dissipation: float) -> float:
-    """Scale of quantities that can be zero by symmetry."""
-    if name in POSITIONS or other_side(name) != name or name.endswith("_drift"):
-        return half_width
-    if name.endswith("_work") and name != "friction_work":
-        return dissipation
-    return 1.0 if name.startswith(("patch_shift", "stick_ratio", "edge_stick")) else 0.0
-
-
-def outputs(result: mfv.Result) -> dict[str, tuple[str, np.ndarray]]:
-    """All fields: unit and values by group/name."""
-    found = {}
-    for group in GROUPS:
-        part = getattr(result, group, None)
-        for name in part or ():
-            if name not in WORK | NUMBERS:
-                found[f"{group}/{name}"] = part.unit(name), np.atleast_1d(np.asarray(part[name]))
-    return found
-
-
-def differences(
-    first: mfv.Result,
-    second: mfv.Result,
-    change: Callable[[str, str, np.ndarray], tuple[str, np.ndarray]] = lambda name, unit, values: (name, values),
-    common: bool = False,
-    tolerance: float = TOLERANCE,
-) -> dict[str, float]:
-    """Relative differences beyond `tolerance` of what is in `first`, changed by `change`, from `second`, by name; `common`: only of what
-    both have."""
-    there, half_width = outputs(second), float(second.observables.contact_half_width)
-    found, expected = {}, set()
-    for path, (unit, values) in outputs(first).items():
-        group, name = path.split("/")
-        to, changed = change(name, unit, values)
-        expected.add(f"{group}/{to}")
-        if f"{group}/{to}" not in there:
-            if not common:
-                found[path] = np.inf
-            continue
-        actual = there[f"{group}/{to}"][1]
-        if changed.shape != actual.shape or not np.array_equal(np.isnan(changed), np.isnan(actual)):
-            found[path] = np.inf
-            continue
-        ends = np.isfinite(changed)
-        size = np.max(np.abs(actual[ends]), initial=scale_of(name, half_width, float(second.summary.dissipation)))
-        error = np.max(np.abs(changed[ends] - actual[ends]), initial=0.0)
-        if error > max(tolerance, TENSION if "tension" in name else 0.0) * size:
-            found[path] = float(error / size)
-    if not common:
-        found.update({path: np.inf for path in there if path not in expected})
-    return found
-
-
-def other_side(name: str) -> str:
-    """The same on the other side: left for right."""
-    for left, right in SIDES:
-        if left in name.split("_"):
-            return name.replace(left, right)
-        if right in name.split("_"):
-            return name.replace(right, left)
-    return name
-
-
-def mirrored(name: str, unit: str, values: np.ndarray) -> tuple[str, np.ndarray]:
-    """What a field is in the mirror image."""
-    sign = -1.0 if name in ODD or other_side(name) != name else 1.0
-    return other_side(name), sign * values[::-1] if is_along_the_surface(name) else sign * values
-
-
-def is_along_the_surface(name: str) -> bool:
-    return name in {
-        "pressure", "shear", "gap", "slip", "friction_work", "normal_displacement", "tangential_displacement",
-        "upper_normal_displacement", "upper_tangential_displacement", "x", "contact_edge", "stick_edge",
-    }  # fmt: skip
-
-
-def other_body(name: str) -> str:
-    """The same of the other body."""
-    if name in ("normal_displacement", "tangential_displacement"):
-        return "upper_" + name
-    if name in ("upper_normal_displacement", "upper_tangential_displacement"):
-        return name.replace("upper_", "")
-    if "lower" in name:
-        return name.replace("lower", "upper")
-    return name.replace("upper", "lower")
-
-
-def exchanged(name: str, unit: str, values: np.ndarray) -> tuple[str, np.ndarray]:
-    """What a field is with the picture turned upside down: x changes its sign, forces and motions of one body against the other
-    do not."""
-    turned = POSITIONS | {
-        "patch_shift_loading", "patch_shift_reversal", "patch_shift_return",
-        "tangential_displacement", "upper_tangential_displacement",
-    }  # fmt: skip
-    sign = -1.0 if name in turned or other_side(name) != name else 1.0
-    return other_body(other_side(name)), sign * values[::-1] if is_along_the_surface(name) else sign * values
-
-
 def mirror_differences(case: Contact, tolerance: float = TOLERANCE) -> dict[str, float]:
     """Differences of a contact from its mirror image."""
     return differences(case.run(), case.run(steps=list(case.steps(sign=-1.0))), mirrored, tolerance=tolerance)
@@ -294,20 +171,6 @@ def stretched(case: Contact, length: float, stress: float) -> Contact:
         force=case.force * stress * length,
         bulk=tuple(None if bulk is None else bulk * stress for bulk in case.bulk),
     )
-
-
-def converter(length: float, stress: float) -> Callable[[str, str, np.ndarray], tuple[str, np.ndarray]]:
-    """Values in other units of length and stress."""
-    sizes = {"force": stress * length**2, "length": length, "1": 1.0}
-
-    def converted(name: str, unit: str, values: np.ndarray) -> tuple[str, np.ndarray]:
-        factor = 1.0
-        for place, word in enumerate(unit.split("/")):
-            base, _, power = word.partition("^")
-            factor *= sizes[base] ** (int(power or 1) * (1 if place == 0 else -1))
-        return name, values * factor
-
-    return converted
 
 
 def unit_differences(case: Contact, seed: int, tolerance: float = TOLERANCE) -> dict[str, float]:

@@ -18,7 +18,7 @@ SEEDS = range(5)
 WORK = ("leaps", "linear_solves", "events", "largest_residual", "cycle_change", "change", "steps_done", "step", "record")
 
 #: What changes its sign when right and left are exchanged; edges, which are exchanged too; and with the direction of the force.
-ODD_PLACES = ("centre", "patch_shift", "_left", "_right", "tension_x")
+ODD_PLACES = ("centre", "patch_shift", "_left", "_right", "tension_x", "largest_pressure_x", "largest_shear_x", "slip_range_x")
 ODD_FORCES = ("tangential_force", "shift")
 
 
@@ -176,7 +176,7 @@ def test_error_estimate_of_several_patches_is_of_their_length() -> None:
     case = drawn(1)
     scene = mfv.Scene(
         mfv.Body.half_plane(shear_modulus=case.modulus, poisson_ratio=case.poisson_ratio), case.profile(),
-        mesh=mfv.Mesh(nodes=121, half_width=case.half_width), output=mfv.Output(error_estimate=True), **case.rest(),
+        mesh=mfv.Mesh(nodes=1001, half_width=case.half_width), output=mfv.Output(error_estimate=True), **case.rest(),
     )  # fmt: skip
     result = mfv.run(scene, check=True)
     assert "contact_half_width" not in result.error_estimate
@@ -234,7 +234,12 @@ def test_split_steps(seed: int) -> None:
     case = drawn(seed)
     first, second = case.tangential_forces
     split = replace(case, tangential_forces=(0.4 * first, first, 0.7 * first + 0.3 * second, second))
-    assert_same(read_off(solved(split)), read_off(solved(case)), case)
+    found, expected = read_off(solved(split)), read_off(solved(case))
+    assert_same(found, expected, case, but=tuple(name for _, name in expected if name.startswith(("largest_", "smallest_"))))
+    # More rows take nothing away.
+    for name in ("largest_pressure", "largest_shear", "largest_stick_ratio"):
+        key = "observables", name
+        assert found[key][0] >= expected[key][0] * (1.0 - 1e-7), name
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -245,7 +250,7 @@ def test_cycles_are_steps_to_and_fro(seed: int) -> None:
     steps = replace(case, cycles=0, tangential_forces=(*case.tangential_forces, there, back, there, back))
     found = read_off(solved(steps))
     expected = {key: values for key, values in read_off(solved(case)).items() if key in found}
-    assert_same(found, expected, case)
+    assert_same(found, expected, case, but=tuple(name for _, name in expected if name.startswith(("largest_", "smallest_"))))
     assert {"patches", "stick_right", "contact_length"} <= {name for group, name in expected if group == "summary"}
 
 
@@ -257,7 +262,7 @@ def test_shifted_profile(seed: int) -> None:
     by = (seed - 2) * interval
     found, expected = (read_off(solved(replace(case, shifted=shift))) for shift in (by, 0.0))
     for (group, name), (values, unit) in expected.items():
-        if name.endswith(("_left", "_right", "tension_x")) or "centre" in name:
+        if name.endswith(("_left", "_right", "_x")) or "centre" in name:
             expected[group, name] = values + by, unit
         if group == "patches" and name.endswith("_node"):
             expected[group, name] = values + (seed - 2), unit
@@ -279,6 +284,10 @@ def test_matrix_is_its_half_plane(seed: int) -> None:
         "stiffness_number",
         "lower_tension",
         "lower_tension_x",
+        "largest_lower_tension",
+        "largest_lower_tension_x",
+        "largest_lower_tension_row",
     ):  # a matrix has no modulus and no inside
         expected.pop(("observables", name), None)
+        expected.pop(("cycles", name), None)
     assert_same(found, expected, case, tolerance=2e-3 if case.coupling == "full" else 1e-7)

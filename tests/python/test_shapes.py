@@ -170,7 +170,7 @@ def test_parabolas_have_no_end() -> None:
             assert result.reference.contact_half_width == pytest.approx(exact, rel=1e-14)
             assert result.summary.edge_half_width == pytest.approx(exact, rel=3e-4)
             assert result.state.pressure.max() == pytest.approx(exact / 2, rel=1e-3)
-            assert len(warnings(result)) == 0
+            assert all("small strains" in warning for warning in warnings(result))
 
 
 def test_warnings_of_surfaces_that_end() -> None:
@@ -180,12 +180,12 @@ def test_warnings_of_surfaces_that_end() -> None:
     keys: dict[str, Any] = {"mesh": mfv.Mesh(nodes=101, half_width=1.25), "steps": [mfv.Step(normal_force=2.5)]}
     for upper in (mfv.Body.disk(1.0, rigid=True), mfv.Body.profile(x, 0.01 * x**2, rigid=True)):
         result = mfv.run(mfv.Scene(lower, upper, **keys))
-        assert ["reaches the end of the surface of the upper body" in text for text in warnings(result)] == [True]
+        assert ["reaches the end of the surface of the upper body" in text for text in warnings(result)].count(True) == 1
     punch = mfv.run(mfv.Scene(lower, mfv.Body.flat_punch(1.0), **keys))
-    assert len(warnings(punch)) == 0
+    assert all("small strains" in text for text in warnings(punch))
     keys["mesh"] = mfv.Mesh(nodes=25, half_width=1.25)
     wide = mfv.run(mfv.Scene(lower, mfv.Body.flat_punch(1.0), **keys))
-    assert ["the contact ends at x = -1.05 instead" in text for text in warnings(wide)] == [True]
+    assert ["the contact ends at x = -1.05 instead" in text for text in warnings(wide)].count(True) == 1
 
 
 def test_warnings_of_rounded_edges_that_the_mesh_does_not_resolve() -> None:
@@ -429,7 +429,7 @@ def test_a_narrow_slip_zone_at_one_edge_is_noticed_beside_a_wide_one() -> None:
                 Step(cycles=2, **cycle),
             ],
         ).run(check=True)
-        assert ("tension at the right edge" in result.attributes["warnings"]) == noticed, nodes
+        assert ("lower_tension" in result.attributes["warnings"]) == noticed, nodes
         tensions[nodes] = float(result.observables.lower_tension)
     assert tensions[420] == pytest.approx(tensions[840], rel=0.01)
     assert tensions[140] > 1.5 * tensions[840]

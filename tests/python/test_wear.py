@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 import numpy as np
@@ -219,18 +220,12 @@ def test_wear_of_whole_slip_zones_in_few_cycles_is_warned_of(coefficient: float)
     assert warned[0] == (coefficient > 1.0) and not warned[2]
 
 
-def test_given_blocks_that_are_too_large_are_warned_of() -> None:
-    result = worn(1000, wear={"coefficient": 0.1, "block": 500})
-    assert result.attributes["warnings"].startswith("100 % of the worn area is from cycles, or given blocks of cycles")
-
-
-def test_the_size_of_the_blocks_has_an_error_of_first_order() -> None:
-    areas = [sliding(256, wear={"block": block}).observables.worn_area for block in (32, 16, 8, 4)]
-    first, second, third = np.diff(areas)
-    assert 1.6 < first / second < 2.6 and 1.6 < second / third < 2.6
-    limit = 2.0 * areas[-1] - areas[-2]
-    chosen = [abs(sliding(256, wear={"tolerance": tolerance}).observables.worn_area / limit - 1.0) for tolerance in (0.1, 0.025)]
-    assert chosen[1] < 0.5 * chosen[0] < 1e-3
+def test_the_size_of_the_blocks_has_an_error_of_more_than_first_order() -> None:
+    exact = sliding(256, wear={"block": 1}).observables.worn_area
+    first, second = (abs(sliding(256, wear={"block": block}).observables.worn_area / exact - 1.0) for block in (64, 16))
+    assert second < first / 5.0 and first < 2e-3
+    chosen = [abs(sliding(256, wear={"tolerance": tolerance}).observables.worn_area / exact - 1.0) for tolerance in (0.1, 0.025)]
+    assert max(chosen) < 1e-2
 
 
 def test_a_first_cycle_unlike_the_others_wears_alone() -> None:
@@ -249,7 +244,7 @@ def test_a_first_cycle_unlike_the_others_wears_alone() -> None:
     ]
     blocks, cycles = (result.cycles for result in results)
     assert cycles.dissipation[0] > 2.0 * cycles.dissipation[1]
-    assert len(blocks.block) <= 5 and blocks.block.sum() == 200
+    assert len(blocks.block) <= 12 and blocks.block.sum() == 200 and blocks.block[0] == 1
     assert blocks.dissipation[-1] == pytest.approx(cycles.dissipation[-1], rel=1e-4)
     depths = [result.state.wear_depth for result in results]
     np.testing.assert_allclose(depths[0], depths[1], atol=1e-3 * depths[1].max())
@@ -390,3 +385,110 @@ def test_blocks_in_partial_slip_lose_little_wear() -> None:
     exact = area(block=1)
     for tolerance in (0.05, 0.01):
         assert area(tolerance=tolerance) == pytest.approx(exact, rel=2.0 * tolerance), tolerance
+
+
+def uneven_scene(seed: int, *, half: bool = False, **wear: Any) -> mfv.Scene:
+    """A random indenter (parabola, waves, unequal powers) on a half-plane, both laws of wear, partial or gross slip, constant or
+    varying normal force; `half`: half as many cycles. The profiles of partial slip are of the kind of which blocks once wore 19
+    times as much as single cycles."""
+    random = np.random.default_rng([40, seed])
+    nodes, ratios, mu = int(random.integers(25, 42)), random.uniform(0.0, 0.45, 2), random.uniform(0.2, 0.95)
+    load, modulus, rigid = 10 ** random.uniform(-4, -3), 10 ** random.uniform(-0.5, 0.5), random.random() < 0.5
+    flexibility = (1 - ratios[0]) / 2 + (0 if rigid else (1 - ratios[1]) / (2 * modulus))
+    contact = np.sqrt(4 * load * flexibility / np.pi)
+    upper: dict[str, Any] = {"rigid": True} if rigid else {"shear_modulus": modulus, "poisson_ratio": ratios[1]}
+    x = np.linspace(-3.0, 3.0, 161) * contact
+    shapes = [
+        0.5 * x**2,
+        0.5 * x**2
+        + 0.5
+        * contact**2
+        * random.uniform(0.02, 0.2)
+        * np.cos(2 * np.pi * x / (contact * random.uniform(0.5, 2.0)) + random.uniform(0, 6)),
+        0.5 * contact**2 * np.abs(x / contact) ** random.uniform(2, 4) * (1 + 0.3 * random.uniform(-1, 1) * np.sign(x)),
+    ]
+    profile = shapes[random.integers(3)]
+    law, motion = ("archard", "work")[random.integers(2)], random.integers(4)
+    coefficient, cycles = 10 ** random.uniform(-2.5, 1.0), int(random.integers(20, 101)) // (2 if half else 1)
+    steps = [mfv.Step(normal_force=load, friction=bool(random.random() < 0.7))]
+    history = None
+    if motion == 0:
+        slide = 2.0 * mu * load * flexibility * random.uniform(1.0, 4.0)
+        steps += [mfv.Step(shift=slide), mfv.Step(shift=-slide, cycles=cycles)]
+    elif motion == 1:
+        shear = mu * load * random.uniform(0.2, 0.95)
+        steps += [mfv.Step(tangential_force=shear), mfv.Step(tangential_force=-shear * random.uniform(0.2, 1), cycles=cycles)]
+    elif motion == 2:
+        other = load * random.uniform(0.6, 1.4)
+        shear = -mu * other * random.uniform(-0.5, 0.9)
+        steps += [
+            mfv.Step(tangential_force=mu * load * random.uniform(0.2, 0.9)),
+            mfv.Step(normal_force=other, tangential_force=shear, cycles=cycles),
+        ]
+    else:
+        rows = int(random.integers(3, 7))
+        normal = load * random.uniform(0.7, 1.3, rows)
+        tangential = mu * normal * random.uniform(-0.85, 0.85, rows)
+        history = mfv.History(normal_force=normal, tangential_force=tangential, cycles=cycles)
+    friction = (
+        mfv.Friction.coulomb(mu) if random.random() < 0.85 else mfv.Friction.static_kinetic(mu, mu * random.uniform(0.85, 1.0))
+    )
+    return mfv.Scene(
+        mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=ratios[0]),
+        mfv.Body.profile(x, profile - profile.min(), **upper),
+        coupling=("full", "goodman", "none")[random.integers(3)],
+        friction=friction,
+        mesh=mfv.Mesh(nodes=nodes, half_width=2.5 * contact),
+        wear=mfv.Wear(law=law, coefficient=coefficient, **wear),
+        steps=steps,
+        history=history,
+        output=mfv.Output(history="steps", states="none"),
+    )
+
+
+SEEDS = 500 if "MFV_DEEP" in os.environ else 24
+
+
+def compared(result: mfv.Result, exact: mfv.Result) -> float:
+    """The largest relative difference of worn area, largest depth and dissipation; of wear that is round-off: 0."""
+    if exact.observables.worn_area < 1e-12 * exact.mesh.x.max() ** 2 > result.observables.worn_area:
+        return 0.0
+    names = ("worn_area", "wear_depth", "dissipation")
+    return max(abs(result.observables[name] / exact.observables[name] - 1.0) for name in names)
+
+
+def test_random_scenes_wear_in_blocks_as_in_single_cycles() -> None:
+    """Within the tolerance of 5 %, in a fraction of the cycles; the same dissipation in history, summary and observables. Of the
+    500 of MFV_DEEP one may differ by more: where bursts of slip shift in time (2 nodes in a slip zone, which is warned of)."""
+    errors, cost, asked = [], 0, 0
+    for seed in range(SEEDS):
+        exact = uneven_scene(seed, half=SEEDS < 100, block=1).run()
+        if exact.outcome != "complete":
+            continue
+        result = uneven_scene(seed, half=SEEDS < 100).run()
+        assert result.outcome == "complete", seed
+        errors.append(compared(result, exact))
+        cost += len(result.cycles.block)
+        asked += int(result.cycles.block.sum())
+        assert asked and result.cycles.block.sum() == len(exact.cycles.block)
+        assert result.history.dissipation[-1] == result.summary.dissipation == result.observables.dissipation
+    print(f"{len(errors)} scenes: median {np.median(errors):.2g}, largest {np.sort(errors)[-3:]}; cost {cost / asked:.3f}")
+    assert len(errors) > 0.8 * SEEDS
+    assert np.median(errors) < 0.005 and np.sum(np.array(errors) > 0.05) <= len(errors) // 400
+    assert cost < 0.4 * asked
+
+
+def test_given_blocks_are_right_or_warned_of() -> None:
+    """Random scenes in blocks of 10 cycles, and a large one."""
+    warned = 0
+    for seed in range(SEEDS // 2):
+        exact = uneven_scene(seed, half=True, block=1).run()
+        result = uneven_scene(seed, half=True, block=10).run()
+        if "complete" not in (exact.outcome, result.outcome):
+            continue
+        warning = "worn_area and wear_depth: the estimated error from the given blocks" in result.attributes["warnings"]
+        warned += warning
+        assert result.outcome != "complete" or warning or compared(result, exact) < 0.05, seed
+    assert warned < SEEDS // 4
+    result = worn(1000, wear={"coefficient": 0.1, "block": 500})
+    assert "worn_area and wear_depth: the estimated error from the given blocks" in result.attributes["warnings"]

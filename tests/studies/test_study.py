@@ -47,8 +47,8 @@ def test_axes_are_coordinates(study):
     assert table["Q"].attrs["units"] == "N/mm" and table["cycle_dissipation"].attrs["units"] == "N"
     assert table["friction%mu"].attrs["units"] == "1" and "&friction mu" in table["friction%mu"].attrs["long_name"]
     assert float(table["base"] == str(folder / "base.nml"))
-    loss = table["loss_factor"].sel({"friction%mu": 0.7, "scene%coupling": "full"})
-    assert loss.dims == ("Q",) and np.isfinite(loss).all()
+    work = table["cycle_dissipation"].sel({"friction%mu": 0.7, "scene%coupling": "full"})
+    assert work.dims == ("Q",) and np.isfinite(work).all()
 
 
 def test_the_dataset_explains_itself(study):

@@ -118,7 +118,7 @@ def test_a_case_is_printed_though_others_cannot_be_used(tmp_path):
         (("values=0.3, 0.7", "values=0.3, -0.7"), 2, "&friction mu=-0.7: must be a number at least 0"),
         (("'goodman', 'none'", "'gudman', 'none'"), 4, "&scene coupling='gudman': must be 'full', 'goodman' or 'none'"),
         (("base='base.nml'", "base='bass.nml'"), 1, "&sweep base='bass.nml': bass.nml cannot be read: No such file or directory"),
-        (("base='base.nml'", "base=''"), 1, "&sweep base='': empty file name"),
+        (("base='base.nml'", "base=''"), 1, "&sweep base='': must not be empty"),
         (("base='base.nml', ", ""), 1, "&sweep: needs base"),
         (("&vary key='friction", "&very key='friction"), 2, "&very: unknown group; did you mean &vary?"),
         (("spacing='log'", "spacing='logg'"), 3, "&vary 2 spacing='logg': must be 'linear' or 'log'"),
@@ -141,6 +141,8 @@ def test_a_case_is_printed_though_others_cannot_be_used(tmp_path):
         ),
         (("name='Q'", "name='outcome'"), 3, "&vary 2 name='outcome': outcome is a column of every study"),
         (("name='Q'", "name='friction%mu'"), 3, "friction%mu is the name of another axis"),
+        (("name='Q'", "name=' '"), 3, "&vary 2 name=' ': must not be empty"),
+        (("base='base.nml'", "base='base.nml', file=''"), 1, "&sweep file='': must not be empty"),
         (("name='Q'", "name=3"), 3, "&vary 2 name=3: must be a text between quotes"),
         (("factor=1, -1", "factor=1"), 3, "must have one value per key (2), not 1"),
         (("factor=1, -1", "factor='a', 'b'"), 3, "&vary 2 factor='a', 'b': must be a number"),
@@ -432,3 +434,24 @@ def test_the_study_in_the_help_is_one(tmp_path):
 def test_every_key_is_documented():
     text = (ROOT / "docs/studies.md").read_text()
     assert all(f"| `{name}` |" in text for keys in KEYS.values() for name in keys)
+
+
+def test_texts_in_a_csv_are_no_formulas(tmp_path):
+    """Names of bases and of columns that a spreadsheet would evaluate; numbers stay numbers."""
+    names = ["=1+1.nml", "+a.nml", "-b.nml", "@c.nml", "d.nml"]
+    write(tmp_path)
+    for name in names:
+        (tmp_path / name).write_text((tmp_path / "base.nml").read_text())
+    bases = ", ".join(f"'{name}'" for name in names)
+    study = f"&sweep base={bases} /\n&vary key='step(3)%tangential_force', values=-2.8e-4, -1.5e-4, name='=Q' /\n"
+    (tmp_path / "study.nml").write_text(study)
+    assert run("study.nml", "-o", "out.csv", cwd=tmp_path).returncode == COMPLETE
+    with open(tmp_path / "out.csv", newline="") as file:
+        header, *rows = csv.reader(file)
+    assert "'=Q" in header and len(rows) == 10
+    forces = {float(row[header.index("'=Q")]) for row in rows}
+    assert forces == {-2.8e-4, -1.5e-4}
+    for cell in (*header, *(cell for row in rows for cell in row)):
+        if cell.startswith(("=", "+", "-", "@")):
+            float(cell)
+    assert {row[header.index("base")].removeprefix("'") for row in rows} >= {"=1+1.nml", "d.nml"}

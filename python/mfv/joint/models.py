@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import sys
 from dataclasses import asdict, dataclass, fields
 from functools import cached_property
 from operator import index
@@ -91,8 +92,8 @@ class _Saved:
 
 
 def _is_number(value: Any) -> bool:
-    """Whether a value of a JSON text is a number."""
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
+    """Whether a value of a JSON text is a finite number."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
 
 
 @dataclass(frozen=True, eq=False)
@@ -420,6 +421,8 @@ def from_json(text: str) -> Iwan | Segalman | Masing | BoucWen:
     """The model of a text of `to_json`. Raises ValueError with what is wrong."""
     try:
         values = json.loads(text)
+    except RecursionError:
+        raise ValueError("not the JSON text of a joint: too many brackets inside each other") from None
     except ValueError as error:
         raise ValueError(f"not the JSON text of a joint: {error}") from None
     if not isinstance(values, dict) or values.pop("format", None) != FORMAT:

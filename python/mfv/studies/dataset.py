@@ -75,15 +75,29 @@ def frame_of(table: xarray.Dataset) -> pandas.DataFrame:
 
 
 def write(table: xarray.Dataset, path: str | os.PathLike[str]) -> None:
-    """Write a dataset: as NetCDF (.nc, .h5), or as comma-separated values with one row per case (.csv). Raises OSError."""
+    """Write a dataset: as NetCDF (.nc, .h5), or as comma-separated values with one row per case (.csv). Raises OSError.
+
+    A text that a spreadsheet would take for a formula has an apostrophe before it in a CSV.
+    """
     is_csv = Path(path).suffix.lower() == ".csv"
     # HDF5 can hang on a full disk, so the file is made in memory.
-    content = frame_of(table).to_csv(index=False).encode() if is_csv else bytes(table.to_netcdf(engine="h5netcdf"))
+    content = _inert(frame_of(table)).to_csv(index=False).encode() if is_csv else bytes(table.to_netcdf(engine="h5netcdf"))
     try:
         with written(Path(path)) as part:
             part.write_bytes(content)
     except OSError as error:
         raise OSError(error.errno, f"{os.fspath(path)}: cannot be written: {error.strerror}") from error
+
+
+def _inert(frame: pandas.DataFrame) -> pandas.DataFrame:
+    """The data frame with an apostrophe before texts, and names of columns, that begin like a formula of a spreadsheet: with =, +, -,
+    @, a tab or a line end (OWASP, CSV injection)."""
+
+    def quoted(value: Any) -> Any:
+        return f"'{value}" if isinstance(value, str) and value.startswith(tuple("=+-@\t\r\n")) else value
+
+    texts = {name: frame[name].map(quoted) for name in frame if frame[name].dtype.kind not in "biuf"}
+    return frame.assign(**texts).rename(columns=quoted)
 
 
 def _columns(study: Study, keys: Sequence[str], solved: Sequence[Solved | None]) -> list[tuple[str, list[Any], str, str]]:

@@ -204,8 +204,6 @@ class _Reader:
         """A base case, which must be valid."""
         path = Path(self.source).parent / name
         try:
-            if not name:
-                raise input_error("empty file name")
             base = Base(text_of_file(path), name, folder=str(path.parent))
             check(base, list(whole_paths(base).items()))
             return base
@@ -302,6 +300,8 @@ def _fault_of_values(key: Key, values: Sequence[Any]) -> str:
         return "a value is missing between commas"
     if any(isinstance(value, float) and not math.isfinite(value) for value in values):
         return "must be finite"
+    if key.kind == "text" and any(isinstance(value, str) and not value.strip() for value in values):
+        return "must not be empty"
     words = key.kind.split()
     kinds: dict[str, Any] = {"text": str, "number": (int, float), "whole": int, "any": object}
     is_right = all(

@@ -8,13 +8,15 @@ module mfv_advice
    use mfv_kinds, only: wp
    use mfv_node_status, only: in_contact
    use mfv_observer, only: observer_type, relay_type
+   use mfv_profile_sampling, only: negligible_pressure
+   use mfv_resolution, only: poorest_patch, undersampling
    use mfv_scene
    use mfv_simulation, only: history_none, new_simulation, simulation_type, states_steps
    use mfv_slip_zones, only: largest_resolved_error
    use mfv_solver_costs, only: cheapest_solver, seconds_of_solve
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
-   use mfv_zone_edges, only: find_zone_edges, zone_edges_type
+   use mfv_zone_edges, only: find_zone_edges, zone_edges_type, zone_type, zones_of
    implicit none
    private
    public :: advice_type, advise, advice_names, advice_count, advice_pressure, advice_shear, advice_half_width, &
@@ -35,8 +37,15 @@ module mfv_advice
    integer, parameter :: most_nodes = 100000
    !> Approximate numbers of nodes in contact on the coarse meshes.
    integer, parameter :: pair_nodes(8) = [13, 15, 17, 19, 21, 23, 25, 27]
-   !> Nodes in contact that the pilot mesh needs; and the minimum for any mesh.
-   integer, parameter :: fewest_pilot_nodes = 8, fewest_nodes = 30
+   !> Number of pairs where more nodes are needed, for several contact patches.
+   integer, parameter :: pairs_of_patches = 3
+   !> Nodes in contact that the pilot mesh needs, in each patch of several; most &mesh nodes of coarse meshes; and the minimum for
+   !> any mesh.
+   integer, parameter :: fewest_pilot_nodes = 8, fewest_pilot_patch = 4, most_coarse_nodes = 40000, fewest_nodes = 30
+   !> Largest difference between the meshes of a pair that is one of converging results: pressure, half-width.
+   real(wp), parameter :: largest_difference = 0.5_wp
+
+   character(*), parameter :: too_few = 'a contact patch has too few nodes, or the profile more points than nodes'
 
    !> Relative residual of an iterative solver over the given error; at least the default.
    real(wp), parameter :: tolerance_part = 1.0e-3_wp
@@ -77,6 +86,8 @@ module mfv_advice
       !> for which the width of the slip zones predicts an error 1 of the dissipation.
       integer :: pairs = 0, resolved_pairs = 0
       real(wp) :: slip_law = 0.0_wp
+      !> Why the pairs do not show convergence; empty if they do.
+      character(:), allocatable :: doubt
    end type law_type
 
 contains
@@ -134,22 +145,27 @@ contains
       type(law_type), intent(out) :: law
       type(advice_type), intent(inout) :: advice
       type(relay_type), intent(inout) :: watch
+      real(wp), parameter :: finer = 3.0_wp
       type(simulation_type) :: pilot, coarse, fine
-      integer :: i, nodes
+      real(wp) :: scale
+      integer :: nodes
 
       allocate (advice%pair_nodes(0))
       call solve_pilot(scene, pilot, nodes, advice, watch)
       if (advice%message /= '') return
       law%density = real(pilot%contact%state%contact_nodes(), wp)/nodes
-      do i = 1, size(pair_nodes)
-         nodes = nearest_mesh(scene, pair_nodes(i)/law%density)
-         if (nodes == 0 .or. any(advice%pair_nodes == nodes)) cycle
-         call solve(scene, nodes, pilot, coarse, advice, watch)
-         if (advice%message == '') call solve(scene, 3*nodes, pilot, fine, advice, watch)
-         if (advice%message /= '') return
-         advice%pair_nodes = [advice%pair_nodes, nodes]
-         call add_pair(law, coarse, fine)
+      scale = 1.0_wp
+      if (patches_of(pilot) > 1) scale = real(pilot%contact%state%contact_nodes(), wp)/minval(pair_nodes)
+      do
+         call measure_pairs(scene, scale, pilot, law, coarse, fine, advice, watch)
+         if (advice%message /= '' .or. law%doubt == '') exit
+         scale = finer*scale
+         if (3*scale*pair_nodes(pairs_of_patches)/law%density <= most_coarse_nodes) cycle
+         advice%status = MFV_INPUT_ERROR
+         advice%message = 'no convergence up to '//to_text(3*advice%pair_nodes(size(advice%pair_nodes)))//' nodes: '//law%doubt
+         exit
       end do
+      if (advice%message /= '') return
       if (law%pairs == 0) then
          advice%status = MFV_INPUT_ERROR
          advice%message = "kernel='fourier': no coarser mesh divides the circle into whole intervals"
@@ -167,6 +183,32 @@ contains
       call try_large_increments(scene, fine, pilot, advice, watch)
    end subroutine measure
 
+   !> Solve pairs of meshes with `scale` times the usual nodes in contact, and add their differences to new laws. `coarse`, `fine`:
+   !> the last pair.
+   subroutine measure_pairs(scene, scale, pilot, law, coarse, fine, advice, watch)
+      type(scene_type), intent(in) :: scene
+      real(wp), intent(in) :: scale
+      type(simulation_type), intent(in) :: pilot
+      type(law_type), intent(inout) :: law
+      type(simulation_type), intent(out) :: coarse, fine
+      type(advice_type), intent(inout) :: advice
+      type(relay_type), intent(inout) :: watch
+      integer :: i, nodes
+
+      law = law_type(density=law%density, doubt='')
+      advice%pair_nodes = [integer ::]
+      do i = 1, merge(pairs_of_patches, size(pair_nodes), scale > 1.0_wp)
+         nodes = nearest_mesh(scene, scale*pair_nodes(i)/law%density)
+         if (nodes == 0 .or. any(advice%pair_nodes == nodes)) cycle
+         call solve(scene, nodes, pilot, coarse, advice, watch)
+         if (advice%message == '') call solve(scene, 3*nodes, pilot, fine, advice, watch)
+         if (advice%message /= '') return
+         advice%pair_nodes = [advice%pair_nodes, nodes]
+         call add_pair(law, coarse, fine)
+         if (law%doubt /= '') return
+      end do
+   end subroutine measure_pairs
+
    !> A coarse mesh with enough nodes in contact to predict their number on any other mesh.
    subroutine solve_pilot(scene, pilot, nodes, advice, watch)
       type(scene_type), intent(in) :: scene
@@ -174,7 +216,7 @@ contains
       integer, intent(out) :: nodes
       type(advice_type), intent(inout) :: advice
       type(relay_type), intent(inout) :: watch
-      integer, parameter :: first = 30, attempts = 8
+      integer, parameter :: first = 30, attempts = 12
       integer :: attempt, contact
 
       nodes = 0
@@ -186,14 +228,36 @@ contains
          call pilot%run(watch)
          contact = pilot%contact%state%contact_nodes()
          if (watch%ended) exit
-         if (pilot%outcome == MFV_COMPLETE .and. contact >= fewest_pilot_nodes) return
-         if (pilot%outcome /= MFV_COMPLETE .and. attempt > 2) exit
+         if (pilot%outcome == MFV_COMPLETE .and. contact >= fewest_pilot_nodes .and. resolves_patches(pilot)) return
+         if (pilot%outcome /= MFV_COMPLETE .and. attempt > 2 .or. 3*nodes > most_coarse_nodes) exit
       end do
       advice%status = pilot%outcome
       if (advice%status == MFV_COMPLETE) advice%status = MFV_INPUT_ERROR
       advice%message = 'on a mesh of '//to_text(nodes)//' nodes: '//status_outcome(pilot%outcome)//', '//to_text(contact)// &
                        ' nodes in contact'
+      if (pilot%outcome == MFV_COMPLETE .and. contact >= fewest_pilot_nodes) &
+         advice%message = 'no convergence up to '//to_text(nodes)//' nodes: '//too_few
    end subroutine solve_pilot
+
+   !> Whether every contact patch that matters has some nodes, and the mesh misses nothing of a profile.
+   logical function resolves_patches(simulation)
+      type(simulation_type), intent(in) :: simulation
+      type(zone_type) :: patch
+      real(wp) :: part(2)
+      integer :: points
+
+      patch = poorest_patch(simulation)
+      call undersampling(simulation, .false., part(1), points)
+      call undersampling(simulation, .true., part(2), points)
+      resolves_patches = patch%last - patch%first >= fewest_pilot_patch .and. all(part <= negligible_pressure)
+   end function resolves_patches
+
+   !> Number of contact patches.
+   integer function patches_of(simulation)
+      type(simulation_type), intent(in) :: simulation
+
+      patches_of = size(zones_of(in_contact(simulation%contact%state%status)))
+   end function patches_of
 
    !> Solve a scene on `nodes` intervals, with the cycles of the pilot.
    subroutine solve(scene, nodes, pilot, simulation, advice, watch)
@@ -270,6 +334,13 @@ contains
             law%slip_law = law%slip_law + fine%slip%error_number()*sum(over%width, mask=in_contact(b%status))**2
          end if
       end associate
+      if (patches_of(coarse) /= patches_of(fine)) then
+         law%doubt = 'the number of contact patches depends on the mesh'
+      else if (.not. resolves_patches(coarse)) then
+         law%doubt = too_few
+      else if (any(difference([advice_pressure, advice_half_width]) > largest_difference)) then
+         law%doubt = 'pressures or contact lengths depend on the mesh'
+      end if
       law%squares = law%squares + (difference*real(nodes, wp)**order)**2
       law%pairs = law%pairs + 1
    end subroutine add_pair

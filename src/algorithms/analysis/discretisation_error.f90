@@ -7,19 +7,21 @@ module mfv_discretisation_error
    use mfv_closed_form, only: alike
    use mfv_compliance, only: block_up, block_wt
    use mfv_contact_model, only: contact_model_type
+   use mfv_corners, only: corner_type, find_corner
    use mfv_error_bar
    use mfv_friction, only: friction_coefficient_type
    use mfv_kinds, only: pi, wp
    use mfv_motions, only: control_keep, motion_approach, motion_shift
-   use mfv_node_status, only: holds
+   use mfv_node_status, only: holds, in_contact
    use mfv_observables, only: observable_count, observable_place, observables_of
    use mfv_observer, only: observer_type, relay_type
+   use mfv_profile_sampling, only: negligible_pressure
+   use mfv_resolution, only: add_unresolved, all_quantities, find_unresolved, is_unresolved, undersampling, unresolved_type
    use mfv_scene, only: scene_type
    use mfv_simulation, only: history_none, new_simulation, simulation_type, states_steps
-   use mfv_slip_zones, only: contact_interval
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
-   use mfv_zone_edges, only: find_patches, largest_shear, patch_type
+   use mfv_zone_edges, only: find_patches, largest_shear, patch_type, zones_of
    implicit none
    private
    public :: estimate_error, coarser_scene, scene_on_mesh, fix_cycles, nearest_mesh, quantity_names, interval_allowances, &
@@ -29,6 +31,9 @@ module mfv_discretisation_error
    real(wp), parameter :: coarsening(3) = [1.4_wp, 1.7_wp, 2.0_wp]
    !> Minimum of nodes in contact on the coarsest mesh.
    integer, parameter :: fewest_contact_nodes = 5
+   !> Factor on the bars of unequal intervals, whose coarser meshes differ less from them than their errors do: measured
+   !> (docs/verification.md).
+   real(wp), parameter :: of_unequal_intervals = 4.0_wp
    !> The observables that get error bars, in the order of the quantities. Of several patches the half-width is half their
    !> total length.
    character(*), parameter :: quantity_names(quantity_count) = &
@@ -55,74 +60,59 @@ contains
       integer, allocatable :: nodes(:)
       integer, parameter :: by_edges(4) = [quantity_half_width, quantity_stick_ratio, quantity_lower_tension, &
                                            quantity_upper_tension]
+      type(unresolved_type), allocatable :: unresolved(:)
       integer :: quantity
 
       estimate%nodes = simulation%contact%model%scene%mesh%nodes
       estimate%message = ''
+      estimate%doubt = ''
       allocate (estimate%coarser_nodes(0))
       call choose_coarser_meshes(simulation, nodes, estimate)
-      if (estimate%message == '') call solve_coarser_meshes(simulation, nodes, values, allowances, estimate, observer)
+      if (estimate%message == '') call find_unresolved(simulation, unresolved)
+      if (estimate%message == '') call solve_coarser_meshes(simulation, nodes, values, allowances, unresolved, estimate, observer)
       if (estimate%message == '') then
          estimate%coarser_nodes = nodes(2:)
          do quantity = 1, quantity_count
             if (any(ieee_is_nan(values(quantity, :)))) cycle
-            if (is_resolved(simulation, quantity)) then
+            if (.not. is_unresolved(unresolved, trim(quantity_names(quantity)))) then
                if (.not. is_there(simulation%contact%model, quantity, values(quantity, :))) cycle
                estimate%bar(quantity) = new_error_bar(nodes, values(quantity, :), allowances(quantity, :), &
                                                       any(quantity == by_edges), &
                                                       all(quantity /= [quantity_peak_pressure, quantity_peak_shear, &
                                                                        quantity_lower_tension, quantity_upper_tension]))
+               if (allocated(simulation%contact%model%scene%mesh%ends)) &
+                  estimate%bar(quantity)%error = of_unequal_intervals*estimate%bar(quantity)%error
             else
                estimate%bar(quantity) = unresolved_bar(values(quantity, :))
             end if
+            if (peak_is_at_corner(simulation, quantity)) estimate%bar(quantity) = logarithmic_bar(values(quantity, :))
          end do
-         if (peak_is_at_corner(simulation)) &
-            estimate%bar(quantity_peak_pressure) = logarithmic_bar(values(quantity_peak_pressure, :))
       end if
       simulation%estimate = estimate
    end subroutine estimate_error
 
-   !> Whether the peak pressure is at a convex corner of the surfaces, where it grows by (m J/pi) ln 2 whenever intervals are
-   !> halved; J: jump of the slope, m = scene%modulus() (wedge: Johnson 1985, section 5.2). How the peak changes from mesh to mesh
-   !> depends more on where the corner lies between nodes. Corners nearer to each other than two intervals of the coarsest mesh
-   !> stand for a smooth surface.
-   pure logical function peak_is_at_corner(simulation)
-      type(simulation_type), intent(in) :: simulation
-      !> A corner lies within `near` nodes of the peak; there is no other curvature within `far` nodes. Least growth.
-      integer, parameter :: near = 1, far = 5
-      real(wp), parameter :: other = 0.25_wp, least_growth = 0.01_wp
-      real(wp) :: change(-far:far), jump
-      integer :: peak, i
-
-      peak_is_at_corner = .false.
-      associate (model => simulation%contact%model, pressure => simulation%contact%state%fields%pressure)
-         peak = maxloc(pressure, dim=1)
-         if (allocated(model%scene%mesh%ends) .or. peak <= far + 1 .or. peak >= size(pressure) - far) return
-         associate (gap => model%initial_gap)
-            change = [((gap(i + 1) - 2.0_wp*gap(i) + gap(i - 1))/model%interval(), i=peak - far, peak + far)]
-         end associate
-         ! Without the curvature beside it.
-         jump = sum(change(-near:near)) - (2*near + 1)*0.5_wp*(change(-far) + change(far))
-         if (.not. jump > 0.0_wp) return
-         if (sum(abs(change(-far:-near - 1))) + sum(abs(change(near + 1:far))) > other*jump) return
-         peak_is_at_corner = model%scene%modulus()*jump/pi*log(2.0_wp) > least_growth*pressure(peak)
-      end associate
-   end function peak_is_at_corner
-
-   !> Whether the slip zones that a quantity depends on have enough nodes.
-   pure logical function is_resolved(simulation, quantity)
+   !> Whether a peak is at a corner, where it grows whenever intervals are halved, and how it changes from mesh to mesh depends more
+   !> on where the corner lies between nodes: the peak pressure, and the peak shear at a corner that has slipped.
+   pure logical function peak_is_at_corner(simulation, quantity)
       type(simulation_type), intent(in) :: simulation
       integer, intent(in) :: quantity
+      type(corner_type) :: corner
+      integer :: peak
 
-      is_resolved = .true.
-      select case (quantity)
-      case (quantity_dissipation, quantity_cycle_dissipation, quantity_loss_factor)
-         is_resolved = .not. simulation%slip%is_coarse()
-      case (quantity_stick_ratio, quantity_peak_shear, quantity_lower_tension, quantity_upper_tension)
-         is_resolved = .not. simulation%slip%is_coarse_now(contact_interval(simulation%contact%model, &
-                                                                            simulation%contact%state))
-      end select
-   end function is_resolved
+      associate (model => simulation%contact%model, state => simulation%contact%state)
+         select case (quantity)
+         case (quantity_peak_pressure)
+            peak = maxloc(state%fields%pressure, dim=1)
+            call find_corner(model, state%fields%pressure, peak, corner, peak_is_at_corner)
+         case (quantity_peak_shear)
+            peak = maxloc(abs(state%fields%shear), dim=1)
+            call find_corner(model, state%fields%pressure, peak, corner, peak_is_at_corner)
+            peak_is_at_corner = peak_is_at_corner .and. state%friction_work(peak) > 0.0_wp
+         case default
+            peak_is_at_corner = .false.
+         end select
+      end associate
+   end function peak_is_at_corner
 
    !> Whether a quantity is modelled and is not zero on all meshes.
    pure logical function is_there(model, quantity, values)
@@ -205,11 +195,12 @@ contains
    end function fits
 
    !> Solve the scene on the coarser meshes. `values`, `allowances`: every quantity on every mesh, shape (quantity_count,
-   !> size(nodes)).
-   subroutine solve_coarser_meshes(simulation, nodes, values, allowances, estimate, observer)
+   !> size(nodes)). `unresolved`: nothing can be estimated from a mesh that misses contact patches, or points of a profile.
+   subroutine solve_coarser_meshes(simulation, nodes, values, allowances, unresolved, estimate, observer)
       type(simulation_type), intent(in) :: simulation
       integer, intent(in) :: nodes(:)
       real(wp), allocatable, intent(out) :: values(:, :), allowances(:, :)
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
       type(error_estimate_type), intent(inout) :: estimate
       class(observer_type), intent(inout), target, optional :: observer
       type(relay_type) :: watch
@@ -232,8 +223,33 @@ contains
          end if
          values(:, i) = quantities_of(coarse)
          allowances(:, i) = interval_allowances(coarse)
+         if (estimate%doubt == '') estimate%doubt = trim(difference_of_meshes(simulation, coarse))
       end do
+      if (estimate%doubt == '') return
+      call add_unresolved(unresolved, all_quantities(simulation), estimate%doubt, 'use more nodes')
+      estimate%doubt = unresolved(size(unresolved))%text
    end subroutine solve_coarser_meshes
+
+   !> Why a coarser mesh says nothing about the discretisation error of a simulation; empty if it does.
+   function difference_of_meshes(simulation, coarse) result(why)
+      type(simulation_type), intent(in) :: simulation, coarse
+      character(len=160) :: why
+      real(wp) :: part(2)
+      integer :: patches(2), points
+
+      why = ''
+      patches(1) = size(zones_of(in_contact(simulation%contact%state%status)))
+      patches(2) = size(zones_of(in_contact(coarse%contact%state%status)))
+      call undersampling(coarse, .false., part(1), points)
+      call undersampling(coarse, .true., part(2), points)
+      if (patches(1) /= patches(2)) then
+         why = 'the error cannot be estimated: there are '//to_text(patches(1))//' contact patches, but '//to_text(patches(2))// &
+               ' on a mesh of '//to_text(coarse%contact%model%scene%mesh%nodes)//' nodes'
+      else if (any(part > negligible_pressure)) then
+         why = 'the error cannot be estimated: a mesh of '//to_text(coarse%contact%model%scene%mesh%nodes)// &
+               ' nodes is coarser than the profile'
+      end if
+   end function difference_of_meshes
 
    !> The scene of a simulation on `nodes` intervals, with as many cycles as the simulation, steady or not.
    type(scene_type) function coarser_scene(simulation, nodes) result(scene)
@@ -331,7 +347,7 @@ contains
       real(wp) :: all_values(observable_count)
       integer :: quantity
 
-      call observables_of(simulation, all_values)
+      call observables_of(simulation, all_values, without_von_mises=.true.)
       values = [(all_values(observable_place(quantity_names(quantity))), quantity=1, quantity_count)]
       values(quantity_half_width) = 0.5_wp*all_values(observable_place('contact_length'))
    end function quantities_of

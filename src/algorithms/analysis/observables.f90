@@ -5,12 +5,12 @@ module mfv_observables
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
-   use mfv_interior, only: interior_type
    use mfv_kinds, only: pi, wp
-   use mfv_motions, only: bulk_motions, motions, motion_count => user_motions, motion_approach, motion_shift
+   use mfv_load_extremes, only: candidate_tension, candidate_von_mises, extreme_type, load_extremes_type
+   use mfv_motions, only: motions, motion_count => user_motions, motion_approach, motion_shift
    use mfv_simulation, only: mark_loading, simulation_type
-   use mfv_state_interior, only: state_interior
-   use mfv_stress_search, only: largest_tension, largest_type
+   use mfv_state_interior, only: find_largest_tension
+   use mfv_stress_search, only: largest_type
    use mfv_zone_edges, only: outermost_edges, find_patches, find_zone_edges, largest_shear, patch_type, zone_edges_type
    implicit none
    private
@@ -18,13 +18,16 @@ module mfv_observables
 
    !> Name, as in tables and files; unit in terms of length and force (energies per unit thickness), or 1; meaning.
    type :: row_type
-      character(len=24) :: name
+      character(len=27) :: name
       character(len=14) :: unit
-      character(len=96) :: meaning
+      character(len=130) :: meaning
    end type row_type
 
+   !> Extremes of a stretch of the load history, at the ends of its load segments.
+   character(*), parameter :: over = ' over the last cycle; without cycles: over all rows or steps'
+   character(*), parameter :: row_meaning = 'when it occurs: row of &history, turning point of the cycle, or step'
    !> Number and list of the observables.
-   integer, parameter :: observable_count = 43
+   integer, parameter :: observable_count = 69
    type(row_type), parameter :: observables(observable_count) = [ &
                                 row_type('normal_force', 'force/length', 'normal force P per unit thickness at the end'), &
                                 row_type('tangential_force', 'force/length', 'tangential force Q per unit thickness at the end'), &
@@ -71,7 +74,35 @@ module mfv_observables
                     row_type('upper_tension', 'force/length^2', 'largest tension along the surface of the upper body at the end'), &
                                 row_type('upper_tension_x', 'length', 'where it is: x'), &
                                 row_type('worn_area', 'length^2', 'area worn off both profiles: volume per unit thickness'), &
-                                row_type('wear_depth', 'length', 'largest depth worn off both surfaces together')]
+                                row_type('wear_depth', 'length', 'largest depth worn off both surfaces together'), &
+                 row_type('largest_lower_tension', 'force/length^2', 'largest tension along the surface of the lower body'//over), &
+                                row_type('largest_lower_tension_x', 'length', 'where it is: x'), &
+                                row_type('largest_lower_tension_row', '1', row_meaning), &
+                 row_type('largest_upper_tension', 'force/length^2', 'largest tension along the surface of the upper body'//over), &
+                                row_type('largest_upper_tension_x', 'length', 'where it is: x'), &
+                                row_type('largest_upper_tension_row', '1', row_meaning), &
+                                row_type('largest_pressure', 'force/length^2', 'largest pressure'//over), &
+                                row_type('largest_pressure_x', 'length', 'where it is: x'), &
+                                row_type('largest_pressure_row', '1', row_meaning), &
+                                row_type('largest_shear', 'force/length^2', 'largest size of the shear traction'//over), &
+                                row_type('largest_shear_x', 'length', 'where it is: x'), &
+                                row_type('largest_shear_row', '1', row_meaning), &
+               row_type('largest_slip_range', 'length', 'largest range of the slip of a node at turning points in contact'//over), &
+                                row_type('largest_slip_range_x', 'length', 'where it is: x'), &
+                                row_type('smallest_stick_ratio', '1', 'smallest stick ratio, as stick_ratio'//over), &
+                                row_type('smallest_stick_ratio_row', '1', row_meaning), &
+                                row_type('largest_stick_ratio', '1', 'largest stick ratio, as stick_ratio'//over), &
+                                row_type('largest_stick_ratio_row', '1', row_meaning), &
+                                row_type('largest_lower_von_mises', 'force/length^2', 'with yield_strength: largest von Mises '// &
+                                         'stress in the lower body'//over), &
+                                row_type('largest_lower_von_mises_x', 'length', 'where it is: x'), &
+                                row_type('largest_lower_von_mises_y', 'length', 'where it is: y'), &
+                                row_type('largest_lower_von_mises_row', '1', row_meaning), &
+                                row_type('largest_upper_von_mises', 'force/length^2', 'with yield_strength: largest von Mises '// &
+                                         'stress in the upper body'//over), &
+                                row_type('largest_upper_von_mises_x', 'length', 'where it is: x'), &
+                                row_type('largest_upper_von_mises_y', 'length', 'where it is: y'), &
+                                row_type('largest_upper_von_mises_row', '1', row_meaning)]
 
 contains
 
@@ -85,14 +116,17 @@ contains
    end function observable_place
 
    !> All observables at the present state of a simulation, with units; NaN if not available.
-   subroutine observables_of(simulation, values)
+   !> `without_von_mises`: not those that need a long search.
+   subroutine observables_of(simulation, values, without_von_mises)
       type(simulation_type), intent(in) :: simulation
       real(wp), intent(out) :: values(observable_count)
+      logical, intent(in), optional :: without_von_mises
       type(contact_state_type) :: state
       type(zone_edges_type) :: loading
 
       values = ieee_value(1.0_wp, ieee_quiet_nan)
       call add_present(simulation, values)
+      call add_extremes(simulation,.not. present(without_von_mises), values)
       if (simulation%marks(mark_loading)%step == 0) return
       state = simulation%padded(simulation%marks(mark_loading))
       call find_zone_edges(simulation%contact%model, state, loading)
@@ -157,23 +191,53 @@ contains
       logical, intent(in) :: upper
       character(*), intent(in) :: name
       real(wp), intent(inout) :: values(:)
-      type(interior_type) :: interior
       type(largest_type) :: largest
       logical :: available
 
-      associate (model => simulation%contact%model, state => simulation%contact%state)
-         ! Pressure only compresses a straight surface.
-         if (model%scene%can_have_bulk_stress(upper) .and. .not. any(abs(state%fields%shear) > 0.0_wp)) then
-            call put(values, name//'_tension', max(state%fields%motion(bulk_motions(merge(2, 1, upper))), 0.0_wp))
-            return
-         end if
-         call state_interior(model, state, upper, interior, available)
-      end associate
+      call find_largest_tension(simulation%contact%model, simulation%contact%state, upper, largest, available)
       if (.not. available) return
-      largest = largest_tension(interior)
       call put(values, name//'_tension', largest%value)
       call put(values, name//'_tension_x', largest%x)
    end subroutine add_tension
+
+   !> Extremes over the last cycle or, without one, over the load history.
+   subroutine add_extremes(simulation, von_mises, values)
+      type(simulation_type), intent(in) :: simulation
+      logical, intent(in) :: von_mises
+      real(wp), intent(inout) :: values(:)
+      type(load_extremes_type) :: extremes
+      character(*), parameter :: body(2) = ['lower', 'upper']
+      integer :: i
+
+      call simulation%find_extremes(von_mises, extremes)
+      call put_extreme('largest_pressure', extremes%pressure)
+      call put_extreme('largest_shear', extremes%shear)
+      call put_extreme('largest_slip_range', extremes%slip_range)
+      call put_extreme('smallest_stick_ratio', extremes%lowest_stick)
+      call put_extreme('largest_stick_ratio', extremes%highest_stick)
+      do i = 1, size(body)
+         call put_extreme('largest_'//body(i)//'_tension', extremes%searched(candidate_tension(i)))
+         call put_extreme('largest_'//body(i)//'_von_mises', extremes%searched(candidate_von_mises(i)))
+      end do
+
+   contains
+
+      !> The observable of a name, and those of its place and row that exist.
+      subroutine put_extreme(name, extreme)
+         character(*), intent(in) :: name
+         type(extreme_type), intent(in) :: extreme
+         character(*), parameter :: suffix(4) = [character(4) :: '', '_x', '_y', '_row']
+         integer :: j, place
+
+         if (extreme%row == 0) return
+         associate (value => [extreme%value, extreme%x, extreme%y, real(extreme%row, wp)])
+            do j = 1, size(suffix)
+               place = observable_place(name//trim(suffix(j)))
+               if (place <= observable_count) values(place) = value(j)
+            end do
+         end associate
+      end subroutine put_extreme
+   end subroutine add_extremes
 
    !> Observables of the last cycle.
    subroutine add_cycle(simulation, cycle, values)

@@ -5,16 +5,18 @@ module mfv_refinement
    use mfv_discretisation_error, only: scene_on_mesh
    use mfv_graded_mesh, only: graded_ends
    use mfv_kinds, only: wp
+   use mfv_motions, only: motion_approach
    use mfv_observer, only: observer_type, relay_type
    use mfv_reference_indenter, only: indenter_type
-   use mfv_scene, only: scene_type, solver_auto
+   use mfv_resolution, only: poorest_patch
+   use mfv_scene, only: control_displacement, control_force, most_by_points, scene_type, solver_auto, step_type
    use mfv_scene_indenter, only: indenter_of
    use mfv_simulation, only: history_none, new_simulation, simulation_type, states_reversals
-   use mfv_status, only: MFV_INTERRUPTED, MFV_MESH_EXCEEDED
-   use mfv_zone_edges, only: find_patches, patch_type
+   use mfv_status, only: MFV_COMPLETE, MFV_INTERRUPTED, MFV_MESH_EXCEEDED
+   use mfv_zone_edges, only: find_patches, patch_type, zone_type
    implicit none
    private
-   public :: refine_at_edges
+   public :: refine_at_edges, follow_patches
 
    !> Coarser meshes have this part of the nodes, and at least this many.
    real(wp), parameter :: coarse_part = 0.5_wp
@@ -92,6 +94,55 @@ contains
       scene%mesh%ends = ends
       scene%mesh%nodes = size(ends) - 1
    end subroutine refine_at_edges
+
+   !> Increase the number of nodes of a scene until every contact patch that matters has enough of them under its largest load,
+   !> without friction. `interrupted`: as above.
+   subroutine follow_patches(scene, interrupted, observer)
+      type(scene_type), intent(inout) :: scene
+      logical, intent(out) :: interrupted
+      class(observer_type), intent(inout), target, optional :: observer
+      integer, parameter :: wanted = 20, most_passes = 8
+      type(relay_type) :: watch
+      type(scene_type) :: trial
+      type(simulation_type) :: pressed
+      type(zone_type) :: patch
+      real(wp) :: part
+      integer :: pass
+
+      interrupted = .false.
+      if (scene%fault() /= '' .or. size(scene%steps) == 0) return
+      if (present(observer)) watch%caller => observer
+      watch%runs = most_passes
+      trial = scene
+      trial%steps = [largest_press(scene%steps)]
+      do pass = 1, most_passes
+         trial%mesh%nodes = scene%mesh%nodes
+         pressed = new_simulation(trial, history_none)
+         watch%before = pass - 1
+         call pressed%run(watch)
+         interrupted = pressed%outcome == MFV_INTERRUPTED
+         if (pressed%outcome /= MFV_COMPLETE .or. pressed%contact%state%contact_nodes() == 0) return
+         patch = poorest_patch(pressed)
+         part = real(patch%last - patch%first + 1, wp)/wanted
+         if (part >= 1.0_wp .or. scene%mesh%nodes >= most_by_points) return
+         scene%mesh%nodes = min(2*ceiling(0.5_wp*scene%mesh%nodes/part) + 1, most_by_points)
+      end do
+   end subroutine follow_patches
+
+   !> A step that presses to the largest target of the approach, or of its force, of some steps, without friction.
+   pure type(step_type) function largest_press(steps) result(press)
+      type(step_type), intent(in) :: steps(:)
+      real(wp) :: target
+
+      press%friction = .false.
+      press%control(motion_approach) = control_force
+      target = maxval(steps%extreme(motion_approach, control_force))
+      if (.not. target > 0.0_wp) then
+         press%control(motion_approach) = control_displacement
+         target = maxval(steps%extreme(motion_approach, control_displacement))
+      end if
+      press%target(motion_approach) = target
+   end function largest_press
 
    !> The edges at the ends of all steps and reversals, and at the end of the run.
    subroutine find_edges(simulation, edges)

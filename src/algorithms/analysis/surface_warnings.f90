@@ -1,15 +1,14 @@
 !> Warnings about the undeformed surfaces in contact: ends, shape between the points of a profile, slope.
 module mfv_surface_warnings
    use mfv_body, only: body_type, interpolation_cubic, interpolation_linear, shape_flat_punch, shape_power, shape_profile, &
-                       shape_rounded_punch, shape_wedge
+                       shape_wedge
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: pi, wp
    use mfv_motions, only: motion_approach
    use mfv_node_status, only: in_contact
+   use mfv_profile_sampling, only: negligible_pressure, pressure_of_wave
    use mfv_simulation, only: simulation_type
-   use mfv_slip_zones, only: needed_mesh, resolved_nodes
    use mfv_strings, only: add_text, string_type, to_text
-   use mfv_zone_edges, only: find_zone_edges, zone_edges_type
    implicit none
    private
    public :: warn_of_surface
@@ -33,7 +32,6 @@ contains
       if (.not. any(contact)) return
       call check_end
       if (body%shape == shape_profile) call check_interpolation
-      if (body%shape == shape_rounded_punch) call check_rounded_edges
       if (.not. any(body%shape == [shape_power, shape_wedge]) .or. body%exponent > 1.0_wp) return
       angle = atan(body%coefficient)*180.0_wp/pi
       if (angle > largest_angle) call add_text(warnings, 'the flanks of the '//name//' body rise by '//to_text(angle, 3)// &
@@ -104,27 +102,9 @@ contains
          end associate
       end function ends_at
 
-      !> From the flat of a punch to the contact edge the pressure rises to its peak and vanishes.
-      subroutine check_rounded_edges()
-         type(zone_edges_type) :: edges
-         real(wp) :: width, interval
-
-         associate (model => simulation%contact%model, state => simulation%contact%state)
-            call find_zone_edges(model, state, edges)
-            width = 0.5_wp*(edges%contact_right - edges%contact_left) - body%flat_half_width
-            interval = minval(model%width, mask=in_contact(state%status))
-            if (.not. edges%contact .or. .not. width > 0.0_wp .or. width >= resolved_nodes*interval) return
-            call add_text(warnings, 'the rounded edges of the '//name//' body are in contact over a width of '// &
-                          to_text(width, 3)//', '//to_text(width/interval, 2)// &
-                          ' intervals: peak pressure, slip and stresses '// &
-                          'are not resolved there; use '//trim(needed_mesh(model, state, width)))
-         end associate
-      end subroutine check_rounded_edges
-
-      !> With points further apart than the nodes the shape between them is uncertain. The effect as a pressure: flattening a
-      !> bump of height e and width h takes pi m e/h (Johnson 1985, section 13.2: pi E* (e/2)/h of a sinusoid, E* = 2 m).
+      !> With points further apart than the nodes the shape between them is uncertain.
       subroutine check_interpolation()
-         real(wp), parameter :: matters = 0.02_wp, further = 1.5_wp
+         real(wp), parameter :: further = 1.5_wp
          real(wp), allocatable :: x(:), departure(:), spacing(:)
          real(wp) :: share
 
@@ -134,13 +114,13 @@ contains
          if (all(spacing <= further*pack(simulation%contact%model%width, contact))) return
          associate (model => simulation%contact%model, pressure => simulation%contact%state%fields%pressure)
             if (model%scene%modulus() > 0.0_wp .and. maxval(pressure) > 0.0_wp) then
-               share = pi*model%scene%modulus()*maxval(departure/spacing)/maxval(pressure)
+               share = maxval(pressure_of_wave(model%scene%modulus(), departure, spacing))/maxval(pressure)
             else
                share = maxval(departure)/max(maxval(pack(model%initial_gap, contact)) - minval(pack(model%initial_gap, contact)), &
                                              tiny(1.0_wp))
             end if
          end associate
-         if (share < matters) return
+         if (share < negligible_pressure) return
          if (body%interpolation == interpolation_linear .and. corners_under(body, x) <= 2) return
          call add_text(warnings, 'the profile of the '//name//' body is coarser than the mesh: its points are up to '// &
                        to_text(maxval(spacing), 3)//' apart in the contact. Straight lines and a smooth curve through them '// &

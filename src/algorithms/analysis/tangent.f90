@@ -11,7 +11,7 @@ module mfv_tangent
    use mfv_first_violation, only: apply_by_violations
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_count, control_displacement
-   use mfv_node_status, only: in_contact
+   use mfv_node_status, only: in_contact, node_frictionless
    use mfv_observer, only: observer_type
    use mfv_status, only: MFV_BAD_ARGUMENT, MFV_INTERRUPTED
    implicit none
@@ -29,8 +29,10 @@ contains
 
    !> tangent(i, j): derivative of the force of motion i with respect to motion j (mfv_motions), shape (motions, motions),
    !> motions from 2 to motion_count; the others are fixed. `direction`: of the next motions, shape (motions), of any length;
-   !> friction acts, if the scene has any. If omitted, statuses are unchanged. Errors MFV_BAD_ARGUMENT: singular contact, or a
-   !> direction of zeros; others: the run in this direction fails.
+   !> friction acts, if the scene has any. If omitted, statuses are unchanged, but nodes that were pressed without friction stick, if
+   !> the scene has friction: whatever small motion follows, no shear reaches the friction limit at once. Zero without contact and, for
+   !> the shift, without friction. Errors MFV_BAD_ARGUMENT: singular contact, or a direction of zeros; others: the run in this
+   !> direction fails.
    subroutine find_tangent(path, tangent, error, direction)
       type(contact_path_type), intent(in) :: path
       real(wp), intent(out) :: tangent(:, :)
@@ -38,10 +40,12 @@ contains
       real(wp), intent(in), optional :: direction(:)
       type(contact_path_type) :: copy
       class(contact_system_type), allocatable :: system
+      logical :: sticks
       integer :: i
 
       tangent = 0.0_wp
-      if (.not. present(direction) .and. all(path%model%moves(:size(tangent, 1)))) then
+      sticks = any(path%state%status == node_frictionless) .and. path%model%scene%friction%acts()
+      if (.not. (present(direction) .or. sticks) .and. all(path%model%moves(:size(tangent, 1)))) then
          ! The solver changes in use: work on a copy, so that results of the original stay bit-identical.
          allocate (system, source=path%system)
          call derive(path, system, tangent, error)
@@ -51,7 +55,11 @@ contains
       do i = 1, size(tangent, 1)
          call copy%begin_motion(i)
       end do
-      if (present(direction)) call adapt_statuses(copy, direction, error)
+      if (present(direction)) then
+         call adapt_statuses(copy, direction, error)
+      else if (sticks) then
+         call copy%start_segment(segment_type(), error)
+      end if
       if (allocated(error)) return
       allocate (system, source=copy%system)
       call derive(copy, system, tangent, error)

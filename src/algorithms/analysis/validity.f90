@@ -2,22 +2,20 @@
 module mfv_validity
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_body, only: body_type, shape_half_plane, shape_matrix
-   use mfv_contact_model, only: needs_equal_intervals
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
-   use mfv_interior, only: has_interior, interior_type
    use mfv_kinds, only: pi, wp
-   use mfv_motions, only: motion_approach, motion_shift, motion_rotation, bulk_motions, &
-                          control_displacement
+   use mfv_load_extremes, only: most_rows
+   use mfv_motions, only: motion_approach, motion_shift, motion_rotation, control_displacement
    use mfv_node_status, only: in_contact
-   use mfv_scene, only: scene_type
-   use mfv_simulation, only: simulation_type, states_none, states_steps
-   use mfv_slip_zones, only: contact_interval, needed_mesh, resolved_nodes, slip_record_type, nodes_at_edge
-   use mfv_state_interior, only: state_interior
-   use mfv_stress_search, only: largest_type, largest_von_mises
+   use mfv_resolution, only: find_unresolved, poorest_patch, unresolved_type
+   use mfv_scene, only: most_of_datum, scene_type
+   use mfv_simulation, only: mark_of, mark_yield, simulation_type
+   use mfv_state_interior, only: find_largest_von_mises
+   use mfv_stress_search, only: largest_type
    use mfv_strings, only: add_text, string_type, to_text
    use mfv_surface_warnings, only: warn_of_surface
-   use mfv_zone_edges, only: zones_of
+   use mfv_zone_edges, only: zone_type
    implicit none
    private
    public :: validity_warnings
@@ -28,22 +26,23 @@ module mfv_validity
 
 contains
 
-   !> Warnings about a simulation: few nodes in contact or slip zones; contact at large angles, or beyond a datum; surfaces that
+   !> Warnings about a simulation: what its mesh does not resolve; contact at large angles, or beyond a datum; surfaces that
    !> end, are steep or are uncertain between points; yield (the largest von Mises stress by refinement); large rotations; wear of
    !> much at once; lost digits; an accuracy beyond that of the mesh.
    subroutine validity_warnings(simulation, warnings)
       type(simulation_type), intent(in) :: simulation
       type(string_type), allocatable, intent(out) :: warnings(:)
-      !> Fewest nodes in contact for half-width and stick ratio; largest residual without lost digits.
-      integer, parameter :: fewest = 10
+      !> Largest residual without lost digits.
       real(wp), parameter :: good = 1.0e-8_wp
-      integer :: nodes
+      type(unresolved_type), allocatable :: unresolved(:)
+      integer :: i
       real(wp) :: largest
 
       allocate (warnings(0))
       associate (scene => simulation%contact%model%scene)
          call check_angle(simulation, 'lower', scene%lower, warnings)
          call check_angle(simulation, 'upper', scene%upper, warnings)
+         call check_strain(simulation, scene, warnings)
          call check_datum(simulation, scene, warnings)
          call check_accuracy(simulation, scene, warnings)
          call warn_of_surface(simulation, .false., scene%lower, largest_angle, warnings)
@@ -51,12 +50,13 @@ contains
          call check_yield(simulation, .false., scene%lower, warnings)
          call check_yield(simulation, .true., scene%upper, warnings)
       end associate
-      nodes = simulation%contact%state%contact_nodes()
-      if (nodes > 0 .and. nodes < fewest) call add_text(warnings, 'only '//to_text(nodes)// &
-                                                        trim(merge(' node is  ', ' nodes are', nodes == 1))// &
-                                                        ' in contact: half-width, stick ratio and tractions are '// &
-                                                        'inaccurate; use a finer mesh')
-      call check_slip_zones(simulation, warnings)
+      call find_unresolved(simulation, unresolved)
+      do i = 1, size(unresolved)
+         call add_text(warnings, unresolved(i)%text)
+      end do
+      if (allocated(simulation%estimate)) then
+         if (simulation%estimate%doubt /= '') call add_text(warnings, simulation%estimate%doubt)
+      end if
       call check_order(simulation%contact%model%scene%lower, warnings)
       call check_rotation(simulation, warnings)
       call check_wear(simulation, warnings)
@@ -84,8 +84,37 @@ contains
       if (.not. angle > largest_angle) return
       call add_text(warnings, 'the contact reaches '//to_text(angle, 3)//' degrees from the initial point of '// &
                     'contact on the '//name//' body; vertical normals are inaccurate beyond '// &
-                    to_text(largest_angle, 2)//' degrees')
+                    to_text(largest_angle, 2)//' degrees: there they are off by '// &
+                    to_text(100.0_wp*sin(min(angle, 90.0_wp)*pi/180.0_wp), 2)//' % (sine) of the tractions')
    end subroutine check_angle
+
+   !> Contacts that are not small: bodies deform as if their strains and displacements did not change their shapes. Strains are of the
+   !> order of the mean pressure over E* = 2 m: 0.4 a/R of a cylinder, half the slope of a wedge.
+   subroutine check_strain(simulation, scene, warnings)
+      type(simulation_type), intent(in) :: simulation
+      type(scene_type), intent(in) :: scene
+      type(string_type), allocatable, intent(inout) :: warnings(:)
+      !> That of a cylinder in contact up to 10 degrees; largest approach over the radius.
+      real(wp), parameter :: largest_strain = 0.07_wp, largest_approach = 0.1_wp
+      character(*), parameter :: consequence = ': the theory of small strains and displacements does not hold; tractions, '// &
+                                 'contact_length, approach, shift, stiffnesses, dissipation and stresses are off '// &
+                                 'by at least that much'
+      real(wp) :: strain, approach
+
+      associate (state => simulation%contact%state, model => simulation%contact%model)
+         if (state%contact_nodes() == 0 .or. .not. scene%modulus() > 0.0_wp) return
+         strain = sum(state%fields%pressure*model%width)/sum(model%width, mask=in_contact(state%status))/(2.0_wp*scene%modulus())
+         approach = 0.0_wp
+         if (scene%lower%circular()) approach = state%fields%motion(motion_approach)/scene%lower%radius
+         if (scene%upper%circular()) approach = max(approach, state%fields%motion(motion_approach)/scene%upper%radius)
+      end associate
+      if (strain > largest_strain) then
+         call add_text(warnings, 'the mean contact pressure is '//to_text(100.0_wp*strain, 2)//' % of the contact modulus E*'// &
+                       consequence)
+      else if (approach > largest_approach) then
+         call add_text(warnings, 'the approach is '//to_text(100.0_wp*approach, 2)//' % of the radius'//consequence)
+      end if
+   end subroutine check_strain
 
    !> An accuracy for which the program's equal intervals are too large: beyond the most nodes, or where the present contact is much
    !> smaller than the mesh, or is one of patches.
@@ -95,51 +124,47 @@ contains
       type(string_type), allocatable, intent(inout) :: warnings(:)
       !> Error of the tractions times nodes in contact, for up to three times the accuracy.
       real(wp), parameter :: error_of_one = 0.08_wp
-      integer :: wanted, patches, nodes
+      type(zone_type) :: patch
+      integer :: wanted, nodes
       character(:), allocatable :: needs
 
       if (.not. scene%mesh%nodes_by_accuracy .or. allocated(scene%mesh%ends) .or. .not. scene%friction%converges()) return
       if (.not. scene%method%accuracy > 0.0_wp) return
       wanted = scene%mesh%nodes_for(scene%method%accuracy)
-      patches = size(zones_of(in_contact(simulation%contact%state%status)))
-      nodes = simulation%contact%state%contact_nodes()
+      patch = poorest_patch(simulation)
+      nodes = patch%last - patch%first + 1
       needs = 'accuracy='//to_text(scene%method%accuracy, 2)//' needs about '
       if (wanted > scene%mesh%nodes) then
          call add_text(warnings, needs//to_text(real(wanted, wp), 2)//' equal intervals; the mesh has '// &
                        to_text(scene%mesh%nodes)//": give nodes, or refine='edges'")
-      else if (nodes < patches*error_of_one/scene%method%accuracy) then
+      else if (nodes < error_of_one/scene%method%accuracy) then
          call add_text(warnings, needs//to_text(nint(3.0_wp*error_of_one/scene%method%accuracy))// &
-                       ' nodes in each patch of contact; now '//to_text(nodes)//' are in '//to_text(patches)// &
-                       trim(merge(' patch  ', ' patches', patches == 1))//': give nodes')
+                       ' nodes in each patch of contact; a patch has '//to_text(nodes)//': give nodes')
       end if
    end subroutine check_accuracy
 
-   !> A default datum that another case would not have; and a datum inside the contact: the compliance of a flat contact of the
-   !> half-width a is proportional to ln(2 d/a).
+   !> A default datum that another case would not have; and a datum inside the contact (see hint_of_datum in mfv_simulation).
    subroutine check_datum(simulation, scene, warnings)
       type(simulation_type), intent(in) :: simulation
       type(scene_type), intent(in) :: scene
       type(string_type), allocatable, intent(inout) :: warnings(:)
-      real(wp), parameter :: most = 1.2_wp
       real(wp) :: half_width
 
-      if (scene%lower%circular() .or. scene%upper%circular() .or. scene%lower%shape == shape_matrix) return
+      if (.not. scene%has_datum()) return
       if (simulation%contact%state%contact_nodes() == 0) return
       if (scene%lower%datum_of_case .or. scene%upper%datum_of_case) &
          call add_text(warnings, 'the datum of the displacements, '//to_text(scene%datum(), 4)//', is the half-width of the '// &
                        'contact at the largest normal_force of this case, or else of its mesh: give datum to compare '// &
                        'approaches, shifts and stiffnesses with those of other cases')
-      associate (arc => simulation%contact%model%arc, touching => in_contact(simulation%contact%state%status))
-         half_width = 0.5_wp*(maxval(arc, mask=touching) - minval(arc, mask=touching))
-      end associate
-      if (half_width > most*scene%datum()) &
+      half_width = simulation%contact%half_width()
+      if (half_width > most_of_datum*scene%datum()) &
          call add_text(warnings, 'the contact half-width of '//to_text(half_width, 3)//' exceeds the datum '// &
                        to_text(scene%datum(), 3)//' at which displacements are measured: approach and shift are too small for '// &
                        'their forces, or negative; set a larger datum')
    end subroutine check_datum
 
-   !> Cycles, or given blocks of them, that wear too much at once: slip paths are constant within them, pressures are those at the
-   !> end. In many more cycles, in which the wear becomes small, it tends to the same limit.
+   !> Cycles that wear too much at once: slip paths are constant within them, pressures are those at the end. In many more cycles,
+   !> in which the wear becomes small, it tends to the same limit. And given blocks of cycles that wear otherwise than single ones.
    subroutine check_wear(simulation, warnings)
       type(simulation_type), intent(in) :: simulation
       type(string_type), allocatable, intent(inout) :: warnings(:)
@@ -149,11 +174,14 @@ contains
          if (.not. model%scene%wear%acts() .or. simulation%cycle_count == 0) return
          worn = model%force(state%worn)
          last = worn - simulation%cycles(simulation%cycle_count)%worn_area
-         if (.not. min(state%coarsely_worn, last) > model%scene%wear%tolerance*worn) return
-         call add_text(warnings, to_text(100.0_wp*state%coarsely_worn/worn, 3)//' % of the worn area is from cycles, or given '// &
-                       'blocks of cycles, that change the pressures or the wear by more than the fraction '// &
-                       to_text(model%scene%wear%tolerance, 2)//' (tolerance of &wear): it may be half of the right one; use a '// &
-                       'smaller coefficient and more cycles, or a smaller block')
+         if (min(state%coarsely_worn, last) > model%scene%wear%tolerance*worn) &
+            call add_text(warnings, 'worn_area and wear_depth: '//to_text(100.0_wp*state%coarsely_worn/worn, 3)//' % of the '// &
+                          'worn area is from cycles that each change the pressures or the wear by more than the fraction '// &
+                          to_text(model%scene%wear%tolerance, 2)//' (tolerance of &wear): it may be half of the right one; '// &
+                          'use a smaller coefficient and more cycles')
+         if (state%wear_error > model%scene%wear%tolerance*worn) &
+            call add_text(warnings, 'worn_area and wear_depth: the estimated error from the given blocks of cycles is '// &
+                          to_text(100.0_wp*state%wear_error/worn, 3)//' %; use smaller blocks, or leave out block of &wear')
       end associate
    end subroutine check_wear
 
@@ -173,7 +201,8 @@ contains
       end associate
       if (abs(error) > small_error) &
          call add_text(warnings, 'the contact has rolled by '//to_text(rolled, 3)//': the relative curvature has an error of '// &
-                       to_text(100.0_wp*error, 2)//' % and the contact half-width about half of that; roll less far')
+                       to_text(100.0_wp*error, 2)//' %, the contact half-width about half of that, tractions and creepage '// &
+                       'up to twice that; roll less far')
       if (simulation%contact%model%scene%mesh%radial) return
       if (simulation%load(motion_approach)%control == control_displacement .and. rolled**2 > small_distance**2*half_width**2) &
          call add_text(warnings, 'the bodies have rolled at a prescribed approach: it refers to the initial '// &
@@ -217,91 +246,6 @@ contains
                        to_text(cycle%drift(motion_shift), 4)//', and so in every further cycle; /cycles has shift_drift')
    end subroutine check_drift
 
-   !> Slip zones with too few nodes: affected quantities and required mesh.
-   subroutine check_slip_zones(simulation, warnings)
-      type(simulation_type), intent(in) :: simulation
-      type(string_type), allocatable, intent(inout) :: warnings(:)
-      character(:), allocatable :: names, text, remedy
-      integer :: nodes
-      real(wp) :: width, interval
-
-      names = ''
-      nodes = resolved_nodes
-      width = huge(width)
-      interval = contact_interval(simulation%contact%model, simulation%contact%state)
-      call add_work(simulation%slip, 'dissipation')
-      ! The tension behind a contact grows with the root of its slip zone; a matrix has no interior.
-      call add_zones(simulation%slip, trim(merge('stick_ratio, peak_shear         ', 'stick_ratio, peak_shear, tension', &
-                                                 simulation%contact%model%scene%lower%shape == shape_matrix)))
-      if (.not. simulation%slip%is_coarse_now(interval)) then
-         call add_edge(-1, 'left')
-         call add_edge(1, 'right')
-      end if
-      if (simulation%cycle_count > 0) then
-         associate (cycle => simulation%cycles(simulation%cycle_count))
-            call add_work(cycle%slip(), 'cycle_dissipation, loss_factor, nonlinear_shift')
-            call add_work(cycle%first_slip, 'first_cycle_dissipation')
-            call add_zones(cycle%loading_slip, 'stick_ratio_loading')
-            call add_zones(cycle%reversal%slip, 'stick_ratio_reversal')
-            call add_zones(cycle%return%slip, 'stick_ratio_return')
-         end associate
-      end if
-      if (names == '') return
-      text = 'slip zones have only '//to_text(nodes)//trim(merge(' node ', ' nodes', nodes == 1))
-      if (nodes == 0) text = 'no node slips: slip zones are narrower than the mesh resolves'
-      remedy = trim(needed_mesh(simulation%contact%model, simulation%contact%state, width))
-      associate (scene => simulation%contact%model%scene)
-         if (.not. (allocated(scene%mesh%ends) .or. scene%lower%shape == shape_matrix .or. needs_equal_intervals(scene))) &
-            remedy = "refine='edges' in &mesh, or "//remedy
-      end associate
-      call add_text(warnings, text//' ('//to_text(width/interval, 2)//' intervals); not resolved: '//names(3:)//'; use '// &
-                    remedy//' for '//to_text(resolved_nodes)//' nodes in each slip zone')
-
-   contains
-
-      subroutine add_work(slip, quantities)
-         type(slip_record_type), intent(in) :: slip
-         character(*), intent(in) :: quantities
-
-         if (slip%is_coarse()) call add(quantities, slip%mean_nodes(), slip%mean_width())
-      end subroutine add_work
-
-      subroutine add_zones(slip, quantities)
-         type(slip_record_type), intent(in) :: slip
-         character(*), intent(in) :: quantities
-
-         if (slip%is_coarse_now(interval)) call add(quantities, slip%nodes_now, slip%width_now)
-      end subroutine add_zones
-
-      !> A slip zone at an edge with too few nodes although the widest one is resolved. A traction that points from the edge into
-      !> the contact causes tension outside.
-      subroutine add_edge(side, name)
-         integer, intent(in) :: side
-         character(*), intent(in) :: name
-         integer :: zone, edge
-
-         associate (model => simulation%contact%model, state => simulation%contact%state)
-            zone = nodes_at_edge(model, state, side)
-            if (zone == 0 .or. zone >= resolved_nodes) return
-            edge = findloc(in_contact(state%status), .true., dim=1, back=side > 0)
-            associate (scene => model%scene)
-               if (.not. merge(has_interior(scene%lower), has_interior(scene%upper), side*state%fields%shear(edge) < 0.0_wp)) return
-            end associate
-            call add('tension at the '//name//' edge', zone, zone*model%width(edge))
-         end associate
-      end subroutine add_edge
-
-      subroutine add(quantities, its_nodes, its_width)
-         character(*), intent(in) :: quantities
-         integer, intent(in) :: its_nodes
-         real(wp), intent(in) :: its_width
-
-         names = names//', '//quantities
-         nodes = min(nodes, its_nodes)
-         width = min(width, its_width)
-      end subroutine add
-   end subroutine check_slip_zones
-
    !> A matrix with the components of each node in turn, instead of all normal ones first. Neighbouring rows are then the two
    !> components of one node, which almost everywhere displace each other less than the next node's.
    subroutine check_order(body, warnings)
@@ -317,72 +261,59 @@ contains
                        'columns must have all normal components first, then all tangential ones')
    end subroutine check_order
 
-   !> The last state and, at the ends of steps, those of largest normal force, and of largest tangential force and bulk stress in
-   !> either direction.
+   !> The largest von Mises stress of the load history, at the ends of its load segments, in the states where it may be.
    subroutine check_yield(simulation, upper, body, warnings)
       type(simulation_type), intent(in) :: simulation
       logical, intent(in) :: upper
       type(body_type), intent(in) :: body
       type(string_type), allocatable, intent(inout) :: warnings(:)
       type(largest_type) :: largest, other
-      character(:), allocatable :: where_it_is
-      integer :: candidates(5), i, n, bulk
+      logical :: available
+      integer :: i, last, mark
 
       if (.not. body%yield_strength > 0.0_wp) return
-      largest = largest_below(simulation, upper, simulation%contact%state)
-      where_it_is = 'in the last state'
-      n = simulation%snapshot_count
-      candidates = 0
-      bulk = bulk_motions(merge(2, 1, upper))
-      if (n > 1) candidates = [maxloc([(simulation%snapshots(i)%state%fields%force(motion_approach), i=1, n)]), &
-                               maxloc([(simulation%snapshots(i)%state%fields%force(motion_shift), i=1, n)]), &
-                               minloc([(simulation%snapshots(i)%state%fields%force(motion_shift), i=1, n)]), &
-                               maxloc([(simulation%snapshots(i)%state%fields%motion(bulk), i=1, n)]), &
-                               minloc([(simulation%snapshots(i)%state%fields%motion(bulk), i=1, n)])]
-      do i = 1, size(candidates)
-         if (.not. ieee_is_finite(largest%value)) exit
-         if (candidates(i) == 0 .or. candidates(i) == n) cycle
-         other = largest_below(simulation, upper, simulation%padded(simulation%snapshots(candidates(i))))
-         if (ieee_is_finite(other%value)) then
-            if (.not. other%value > largest%value) cycle
-         end if
+      last = 0
+      do i = 1, most_rows
+         mark = mark_of(mark_yield, merge(2, 1, upper), i)
+         if (simulation%marks(mark)%step == 0) cycle
+         call find_largest_von_mises(simulation%contact%model, simulation%padded(simulation%marks(mark)), upper, other, available)
+         if (.not. available) return
+         if (last > 0 .and. other%value <= largest%value) cycle
          largest = other
-         where_it_is = 'in steps/'//to_text(candidates(i))
+         last = mark
+         if (.not. ieee_is_finite(largest%value)) exit
       end do
+      if (last == 0) return
       if (.not. ieee_is_finite(largest%value)) then
          call add_text(warnings, 'the '//merge('upper', 'lower', upper)//' body yields under any load: its stresses are '// &
                        'unbounded at a sharp corner; they are bounded with rounded edges')
       else if (largest%value > body%yield_strength) then
-         call add_text(warnings, 'the largest von Mises stress of the '//merge('upper', 'lower', upper)//' body, '// &
-                       to_text(largest%value, 4)//' '//where_it_is//', exceeds its yield_strength '// &
-                       to_text(body%yield_strength)//': stresses and tractions are not valid beyond yield')
-      else if (has_history(simulation) .and. any(simulation%keep_states == [states_steps, states_none])) then
-         call add_text(warnings, 'yield of the '//merge('upper', 'lower', upper)//' body is not checked at the turning points '// &
-                       "of the load history, which are not saved: set states='reversals' in &output")
+         associate (where_it_is => simulation%marks(last))
+            call add_text(warnings, 'the largest von Mises stress of the '//merge('upper', 'lower', upper)//' body, '// &
+                          to_text(largest%value, 4)//' '// &
+                          trim(place_in_history(simulation, where_it_is%step, where_it_is%reversal))// &
+                          ', exceeds its yield_strength '//to_text(body%yield_strength)// &
+                          ': stresses and tractions are not valid beyond yield')
+         end associate
       end if
    end subroutine check_yield
 
-   !> Whether a step is a load history with turning points of its own, or a row of one.
-   pure logical function has_history(simulation)
+   !> The end of a load segment in words; padded with blanks.
+   pure function place_in_history(simulation, step, segment) result(text)
       type(simulation_type), intent(in) :: simulation
-      integer :: i
+      integer, intent(in) :: step, segment
+      character(len=80) :: text
 
+      text = 'at the end of step '//to_text(step)
+      if (segment > 1) text = 'at turning point '//to_text(segment)//' of step '//to_text(step)
       associate (steps => simulation%contact%model%scene%steps)
-         has_history = any(steps%is_passed) .or. any([(allocated(steps(i)%path), i=1, size(steps))])
+         if (step > size(steps)) return
+         if (steps(step)%row > 0) then
+            text = 'in row '//to_text(steps(step)%row + mod(segment - 1, steps(step)%turns()))//' of &history'
+         else if (steps(step)%cycles > 0) then
+            text = 'at turning point '//to_text(segment)//' of step '//to_text(step)
+         end if
       end associate
-   end function has_history
-
-   !> Largest von Mises stress of a body in a state; zero without an interior.
-   type(largest_type) function largest_below(simulation, upper, state) result(largest)
-      type(simulation_type), intent(in) :: simulation
-      logical, intent(in) :: upper
-      type(contact_state_type), intent(in) :: state
-      type(interior_type) :: interior
-      logical :: available
-
-      ! The value is flat at its maximum: few elements suffice.
-      call state_interior(simulation%contact%model, state, upper, interior, available, fewest_elements=60)
-      if (available) largest = largest_von_mises(interior)
-   end function largest_below
+   end function place_in_history
 
 end module mfv_validity

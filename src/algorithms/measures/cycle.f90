@@ -1,9 +1,10 @@
 !> A cycle of the load history: its three turning points, and what is measured between them.
 module mfv_cycle
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: pi, wp
+   use mfv_load_extremes, only: load_extremes_type
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift
    use mfv_slip_zones, only: slip_record_type
    use mfv_zone_edges, only: find_zone_edges, zone_edges_type
@@ -35,16 +36,13 @@ module mfv_cycle
       integer :: step = 0, number = 0, overall = 0
       !> Start; the turning point with the forces that differ most from those at the start; return.
       type(turning_point_type) :: start, reversal, return
-      !> Extremes of forces, motions and the stick ratio at the turning points, without the start.
+      !> Extremes at the turning points, without the start: of forces and motions, and of what they cause.
       real(wp), dimension(motion_count) :: lowest_force = 0.0_wp, highest_force = 0.0_wp, lowest_motion = 0.0_wp, &
                                            highest_motion = 0.0_wp
-      real(wp) :: lowest_stick_ratio = 0.0_wp, highest_stick_ratio = 0.0_wp
+      type(load_extremes_type) :: extremes
       !> Cycles of the block of wear that begins with this one; area worn off the profiles before it, length^2.
       integer :: block = 1
       real(wp) :: worn_area = 0.0_wp
-      !> Dissipation of the cycle computed before in this step, force, and the cycles of its block.
-      real(wp) :: dissipation_before = 0.0_wp
-      integer :: block_before = 1
       !> Largest change of a traction from start to return, relative to the largest traction so far.
       real(wp) :: change = 0.0_wp
       !> Energy dissipated in the first cycle of this step, per unit thickness: force.
@@ -100,25 +98,18 @@ contains
       class(cycle_type), intent(inout) :: self
       type(turning_point_type), intent(in) :: point
       logical, intent(in) :: is_first
-      real(wp) :: stick_ratio
 
-      stick_ratio = point%edges%stick_ratio()
       if (is_first) then
          self%lowest_force = point%force
          self%highest_force = point%force
          self%lowest_motion = point%motion
          self%highest_motion = point%motion
-         self%lowest_stick_ratio = stick_ratio
-         self%highest_stick_ratio = stick_ratio
          return
       end if
       self%lowest_force = min(self%lowest_force, point%force)
       self%highest_force = max(self%highest_force, point%force)
       self%lowest_motion = min(self%lowest_motion, point%motion)
       self%highest_motion = max(self%highest_motion, point%motion)
-      ! A ratio is NaN without contact.
-      if (stick_ratio < self%lowest_stick_ratio .or. ieee_is_nan(self%lowest_stick_ratio)) self%lowest_stick_ratio = stick_ratio
-      if (stick_ratio > self%highest_stick_ratio .or. ieee_is_nan(self%highest_stick_ratio)) self%highest_stick_ratio = stick_ratio
    end subroutine add_point
 
    !> Work of the force of a motion over the cycle, per unit thickness: force. It is the area of the loop of force and motion; an
@@ -222,14 +213,21 @@ contains
    end function secant_stiffness
 
    !> Loss factor: area of the loop of tangential force and shift over 2 pi times the energy force_amplitude*shift_amplitude/2 of a
-   !> spring of the secant stiffness. The area is the dissipation unless another load changes. NaN without a secant stiffness.
+   !> spring of the secant stiffness. The area is the dissipation unless another load changes. NaN without a secant stiffness, and
+   !> for a loop that is open, which has no area: the work between its ends depends on how it is closed.
    elemental real(wp) function loss_factor(self)
       class(cycle_type), intent(in) :: self
+      !> Part of the area by which an open loop may be uncertain.
+      real(wp), parameter :: negligible = 0.01_wp
+      real(wp) :: open_work
 
       loss_factor = ieee_value(1.0_wp, ieee_quiet_nan)
       if (.not. self%is_sheared()) return
       loss_factor = self%loop_area(motion_shift)
       if (self%only_sheared()) loss_factor = self%dissipation()
+      open_work = self%force_amplitude()*abs(self%drift(motion_shift)) + &
+                  self%shift_amplitude()*abs(self%return%force(motion_shift) - self%start%force(motion_shift))
+      if (open_work > negligible*abs(loss_factor)) loss_factor = ieee_value(1.0_wp, ieee_quiet_nan)
       loss_factor = loss_factor/(pi*self%force_amplitude()*self%shift_amplitude())
    end function loss_factor
 

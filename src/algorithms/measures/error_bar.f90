@@ -37,6 +37,8 @@ module mfv_error_bar
       !> Status (see mfv_status), MFV_COMPLETE with error bars; message: why there are none, else empty.
       integer :: status = 0
       character(:), allocatable :: message
+      !> A warning if the coarser meshes do not allow error bars; else empty.
+      character(:), allocatable :: doubt
       !> Intervals of the mesh and of the coarser meshes, finest first; as &mesh nodes.
       integer :: nodes = 0
       integer, allocatable :: coarser_nodes(:)
@@ -107,7 +109,7 @@ contains
       bar%coarser_values = values(2:)
    end function logarithmic_bar
 
-   !> A quantity that the coarser meshes do not resolve. `values`: as above.
+   !> A quantity that the mesh, or a coarser one, does not resolve (mfv_resolution). `values`: as above.
    pure type(error_bar_type) function unresolved_bar(values) result(bar)
       real(wp), intent(in) :: values(:)
 

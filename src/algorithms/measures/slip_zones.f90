@@ -20,8 +20,8 @@ module mfv_slip_zones
    use mfv_zone_edges, only: ends_with_body, find_zone_edges, zone_edges_type, zone_type, zones_of
    implicit none
    private
-   public :: slip_record_type, segment_start_type, widest_slip_zone, nodes_at_edge, resolved_nodes, needed_mesh, &
-             contact_interval, largest_resolved_error
+   public :: slip_record_type, segment_start_type, widest_slip_zone, nodes_at_edge, hidden_width_at_edge, &
+             resolved_nodes, needed_mesh, contact_interval, largest_resolved_error
 
    !> Nodes of a resolved slip zone.
    integer, parameter :: resolved_nodes = 4
@@ -143,6 +143,36 @@ contains
       end associate
       if (reversed > 0) nodes = merge(min(nodes, reversed), reversed, nodes > 0)
    end function nodes_at_edge
+
+   !> Width (length) of a slip zone without a node at the left (`side` -1) or right (1) edge of a contact of one patch whose
+   !> outermost node sticks although others slip; 0 without one. Next to the edge the shear traction of a stick zone is K/sqrt(d) +
+   !> B sqrt(d), the friction limit M sqrt(d): d times their ratio is linear in the distance d, K/M at the edge, and the slip zone
+   !> 2 K/M wide (see the head of this file). The outermost nodes have the largest errors and are not used.
+   real(wp) function hidden_width_at_edge(model, state, side) result(width)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      integer, intent(in) :: side
+      integer, parameter :: first = 2, last = 4
+      type(zone_edges_type) :: edges
+      real(wp), dimension(first:last) :: distance, times_ratio
+      integer :: edge, node(0:last), i
+
+      width = 0.0_wp
+      call find_zone_edges(model, state, edges)
+      edge = findloc(in_contact(state%status), .true., dim=1, back=side > 0)
+      node = [(edge - side*i, i=0, last)]
+      if (edges%patches /= 1 .or. minval(node) < 1 .or. maxval(node) > size(state%status)) return
+      if (.not. model%scene%friction%law%sticks .or. .not. all(holds(state%status(node)))) return
+      if (ends_with_body(model, edge, side)) return
+      associate (inner => node(first:))
+         distance = abs(model%arc(inner) - merge(edges%contact_left, edges%contact_right, side < 0))
+         times_ratio = distance*state%fields%shear(inner)/(model%static_friction(inner)*state%fields%pressure(inner))
+      end associate
+      associate (slope => (times_ratio(last) - times_ratio(first))/(distance(last) - distance(first)))
+         width = 2.0_wp*abs(sum(times_ratio - slope*distance)/size(distance))
+      end associate
+      if (width < visible*model%width(edge) .or. width > widest_hidden*model%width(edge)) width = 0.0_wp
+   end function hidden_width_at_edge
 
    !> Add the load segment from `start` to `state`. `rates`: change of each load; `nodes`: largest number of nodes in a slip zone on
    !> it. `tolerance`: relative tolerance of the linear solver.
@@ -409,18 +439,20 @@ contains
       if (state%contact_nodes() > 0) contact_interval = sum(model%width, mask=in_contact(state%status))/state%contact_nodes()
    end function contact_interval
 
-   !> The mesh that resolves slip zones of a width (length), in words.
-   function needed_mesh(model, state, width) result(words)
+   !> The mesh that has `wanted` nodes in zones of a width (length), in words.
+   function needed_mesh(model, state, width, wanted) result(words)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       real(wp), intent(in) :: width
+      integer, intent(in) :: wanted
       character(len=80) :: words
-      real(wp), parameter :: countable = 1.0e8_wp
+      !> A zone is that much wider than its nodes, in intervals; most nodes that are worth a number.
+      real(wp), parameter :: margin = 0.5_wp, countable = 1.0e8_wp
       real(wp) :: nodes, digits
 
-      words = 'intervals of '//to_text(width/resolving_intervals, 2)
+      words = 'intervals of '//to_text(width/(wanted + margin), 2)
       if (model%scene%lower%shape == shape_matrix) return
-      nodes = model%scene%mesh%nodes*resolving_intervals*contact_interval(model, state)/width
+      nodes = model%scene%mesh%nodes*(wanted + margin)*contact_interval(model, state)/width
       digits = 10.0_wp**(floor(log10(nodes)) - 1)
       if (nodes < countable) words = 'about '//to_text(nint(digits*ceiling(nodes/digits)))//' nodes ('//trim(words)//')'
    end function needed_mesh

@@ -3,13 +3,15 @@ module mfv_state_interior
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
+   use mfv_corners, only: corner_type, corners_of
    use mfv_interior, only: has_interior, interior_type
-   use mfv_kinds, only: wp
+   use mfv_kinds, only: certified, wp
    use mfv_motions, only: bulk_motions
+   use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
    use mfv_zone_edges, only: find_patches, patch_type
    implicit none
    private
-   public :: state_interior, find_edges_at_nodes
+   public :: state_interior, find_edges_at_nodes, find_largest_tension, find_largest_von_mises, surface_stress_at
 
 contains
 
@@ -23,6 +25,8 @@ contains
       logical, intent(out) :: available
       integer, intent(in), optional :: fewest_elements
       real(wp), dimension(model%nodes()) :: contact_edge, stick_edge
+      type(corner_type), allocatable :: corners(:)
+      integer :: i
 
       available = has_interior(model%scene%lower)
       if (upper) available = has_interior(model%scene%upper)
@@ -31,7 +35,69 @@ contains
       call model%scene%interior(upper, model%arc, model%width, state%fields%pressure, state%fields%shear, contact_edge, &
                                 stick_edge, state%fields%motion(bulk_motions(merge(2, 1, upper))), interior, &
                                 available, fewest_elements)
+      corners = corners_of(model, state)
+      allocate (interior%unresolved(2, size(corners)))
+      do i = 1, size(corners)
+         interior%unresolved(:, i) = corners(i)%place + corners(i)%reach*[-1.0_wp, 1.0_wp]
+      end do
    end subroutine state_interior
+
+   !> The largest tension along the surface of a body in a state; `available`: see state_interior.
+   subroutine find_largest_tension(model, state, upper, largest, available)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      logical, intent(in) :: upper
+      type(largest_type), intent(out) :: largest
+      logical, intent(out) :: available
+      type(interior_type) :: interior
+
+      ! Pressure only compresses a straight surface.
+      available = model%scene%can_have_bulk_stress(upper) .and. &
+                  .not. maxval(abs(state%fields%shear)) > certified*maxval(state%fields%pressure)
+      if (available) then
+         largest%value = max(state%fields%motion(bulk_motions(merge(2, 1, upper))), 0.0_wp)
+         largest%x = ieee_value(1.0_wp, ieee_quiet_nan)
+         largest%y = largest%x
+         return
+      end if
+      call state_interior(model, state, upper, interior, available)
+      if (available) largest = largest_tension(interior)
+   end subroutine find_largest_tension
+
+   !> Stress along the surface of a body at x in a state, force/length^2; NaN without stresses, and beyond a circle.
+   real(wp) function surface_stress_at(model, state, upper, x) result(stress)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      logical, intent(in) :: upper
+      real(wp), intent(in) :: x
+      type(interior_type) :: interior
+      logical :: available
+
+      stress = ieee_value(1.0_wp, ieee_quiet_nan)
+      call state_interior(model, state, upper, interior, available)
+      if (.not. available) return
+      associate (body => interior%body)
+         if (.not. body%circular()) then
+            stress = interior%surface_stress(x)
+         else if (abs(x) <= body%radius) then
+            stress = interior%surface_stress(body%radius*asin(x/body%radius))
+         end if
+      end associate
+   end function surface_stress_at
+
+   !> The largest von Mises stress in a body in a state; `available`: see state_interior.
+   subroutine find_largest_von_mises(model, state, upper, largest, available)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      logical, intent(in) :: upper
+      type(largest_type), intent(out) :: largest
+      logical, intent(out) :: available
+      type(interior_type) :: interior
+
+      ! The value is flat at its maximum: few elements suffice.
+      call state_interior(model, state, upper, interior, available, fewest_elements=60)
+      if (available) largest = largest_von_mises(interior)
+   end subroutine find_largest_von_mises
 
    !> Edges of contact and stick zones, arc lengths from the origin of x, at the first and last node of each zone; NaN
    !> elsewhere; shape (nodes). A zone of one node has the width of its interval. Stick zones only with a sharp friction

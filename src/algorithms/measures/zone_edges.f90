@@ -7,16 +7,17 @@
 !> zone). Behind the edge of a growing stick zone the exponent is larger by one, the integral of the root, as in Spence's
 !> closed forms; the exponent with the straighter fit is used. A traction raised to the inverse exponent is nearly linear: a
 !> parabola through a few nodes is extrapolated to its zero. The outermost node has the largest discretisation error and is
-!> not used; the error of the others is known and corrected (mfv_edge_solutions). On a graded mesh tractions are means over unequal
-!> intervals: their integral from the edge is extrapolated instead, whose exponent is larger by one.
+!> not used; the error of the others is known and corrected (mfv_edge_solutions). On a graded mesh the discrete solutions of the
+!> outermost intervals are fitted to their tractions; without one, the integral of the traction from the edge is extrapolated,
+!> whose exponent is larger by one.
 module mfv_zone_edges
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_body, only: shape_matrix
    use mfv_compliance, only: block_wp, block_wt
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
-   use mfv_edge_solutions, only: least_power, most_power, solved_distance
-   use mfv_kinds, only: pi, wp
+   use mfv_edge_solutions, only: graded_solution_type, least_power, most_power, new_graded_solution, solved_distance
+   use mfv_kinds, only: certified, pi, wp
    use mfv_motions, only: motion_shift
    use mfv_node_status, only: holds, in_contact, slip_sign, slips
    use mfv_surface_tractions, only: root_shift
@@ -75,6 +76,10 @@ module mfv_zone_edges
       !> Number of values, and of nodes in the whole zone.
       integer :: number = 0, zone = 0
       real(wp) :: inwards(0:most_samples - 1) = 0.0_wp, value(0:most_samples - 1) = 0.0_wp
+      !> Of unequal intervals, those of the whole zone: tractions and widths, in intervals.
+      real(wp), allocatable :: traction(:), width(:)
+      !> Width of the interval beyond the outermost one, in which the edge can be.
+      real(wp) :: beyond = 0.0_wp
       !> Exponent of the distance, whether the discretisation error is known, and whether values are integrals of the traction.
       real(wp) :: power = 0.5_wp
       logical :: is_regular = .false., is_integral = .false.
@@ -205,26 +210,30 @@ contains
    pure function held(state)
       type(contact_state_type), intent(in) :: state
       logical :: held(size(state%status))
-      real(wp), parameter :: nothing = 1.0e-6_wp
-      real(wp) :: slipped(size(state%status))
+      real(wp) :: scale
 
-      slipped = 0.0_wp
       held = .false.
       if (.not. any(holds(state%status))) return
-      where (slips(state%status)) slipped = abs(state%fields%tangential - state%fields%motion(motion_shift) - state%stuck_slip)
-      held = holds(state%status) .or. (slips(state%status) .and. slipped <= nothing*maxval(slipped))
+      associate (shift => state%fields%motion(motion_shift), tangential => state%fields%tangential)
+         scale = max(maxval(abs(tangential)), abs(shift))
+         held = holds(state%status) .or. (slips(state%status) .and. &
+                                          abs(tangential - shift - state%stuck_slip) <= certified*scale)
+      end associate
    end function held
 
    !> Largest size of the shear traction in a patch, force/length^2: at its nodes, and at the edges of stick zones between nodes,
    !> beyond which it is mu p. At nodes alone it would be too small by the root of the interval (Mindlin 1949: the remaining
-   !> friction inside the edge).
-   real(wp) function largest_shear(model, state, patch) result(largest)
+   !> friction inside the edge). `arc`: where it is.
+   real(wp) function largest_shear(model, state, patch, arc) result(largest)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       type(patch_type), intent(in) :: patch
+      real(wp), intent(out), optional :: arc
       integer :: i
 
-      largest = maxval(abs(state%fields%shear(patch%first:patch%last)))
+      i = patch%first - 1 + maxloc(abs(state%fields%shear(patch%first:patch%last)), dim=1)
+      largest = abs(state%fields%shear(i))
+      if (present(arc)) arc = model%arc(i)
       if (.not. model%scene%friction%is_coulomb()) return
       do i = 1, size(patch%stick)
          call compare(patch%stick(i)%left, patch%stick(i)%first, -1)
@@ -237,14 +246,16 @@ contains
       subroutine compare(edge, outermost, side)
          real(wp), intent(in) :: edge
          integer, intent(in) :: outermost, side
-         real(wp) :: part
+         real(wp) :: part, limit
 
          associate (next => outermost + side, pressure => state%fields%pressure)
             if (next < patch%first .or. next > patch%last) return
             if (.not. slips(state%status(next))) return
             part = min(max((edge - model%arc(outermost))/(model%arc(next) - model%arc(outermost)), 0.0_wp), 1.0_wp)
-            largest = max(largest, model%kinetic_friction(next)*(pressure(outermost) + &
-                                                                 part*(pressure(next) - pressure(outermost))))
+            limit = model%kinetic_friction(next)*(pressure(outermost) + part*(pressure(next) - pressure(outermost)))
+            if (.not. limit > largest) return
+            largest = limit
+            if (present(arc)) arc = edge
          end associate
       end subroutine compare
    end function largest_shear
@@ -330,7 +341,7 @@ contains
       type(patch_type), intent(in) :: patch
       integer, intent(in) :: side
       real(wp), intent(out) :: edge, error
-      real(wp) :: lack(size(state%status)), power, direction
+      real(wp) :: lack(size(state%status)), power, direction, widest
       type(samples_type) :: samples
       integer :: last, next, other, patch_end
 
@@ -340,11 +351,13 @@ contains
       next = last + side
       edge = model%arc(last) + 0.5_wp*side*model%width(last)
       error = error_if_unknown*model%width(last)
+      widest = huge(widest)
       if (last == patch_end) then
          edge = merge(patch%right, patch%left, side > 0)
          if (merge(patch%right_ends, patch%left_ends, side > 0) .or. last == other) return
          next = last
          direction = sign(1.0_wp, state%fields%shear(last))
+         widest = widest_hidden_slip()
       else
          direction = -slip_sign(state%status(next))
       end if
@@ -364,16 +377,30 @@ contains
       samples = sampled(model, lack, last, other)
       if (.not. model%compliance%elastic_block(block_wt)) samples%is_regular = has_known_error(model, last, samples%number)
       edge = model%arc(last) + side*model%width(last)*distance_of_lack(samples, power)
+      if (widest < huge(widest)) edge = side*max(side*edge, side*merge(patch%right, patch%left, side > 0) - widest)
       error = model%width(last)*max(uncertainty(straightened(samples, power)), least_stick_error)
       call correct_by_slip(edge, error)
 
    contains
 
+      !> Upper limit of a slip zone of the width c inside the outermost interval, length: at the distance d from the contact's edge
+      !> tau is mu p (1 - sqrt(1 - c/d)), at least mu p c/(2 d); twice that c for the discretisation error, with d at least half
+      !> an interval. Without shear there is no such zone, whatever the sign of its rounding errors.
+      pure real(wp) function widest_hidden_slip() result(width)
+         real(wp), parameter :: allowance = 2.0_wp
+         real(wp) :: limit
+
+         limit = model%static_friction(last)*state%fields%pressure(last)
+         width = 2.0_wp*allowance*max(abs(edge - model%arc(last)), 0.5_wp*model%width(last))
+         if (limit > 0.0_wp) width = width*min(abs(state%fields%shear(last))/limit, 1.0_wp)
+      end function widest_hidden_slip
+
       !> Behind an older stick zone that ended nearby, the remaining friction nearly vanishes twice within a few intervals: if the
       !> slip disagrees with the traction, it locates the edge.
       subroutine correct_by_slip(edge, error)
          real(wp), intent(inout) :: edge, error
-         real(wp), parameter :: agreement = 0.35_wp, straight = 0.3_wp
+         !> In intervals; unequal ones have mean slips.
+         real(wp), parameter :: agreement(2) = [0.35_wp, 1.0_wp], straight = 0.3_wp
          integer :: node, i
          real(wp) :: by_slip, values(0:2)
 
@@ -385,7 +412,7 @@ contains
          end do
          if (abs(values(2) - 2.0_wp*values(1) + values(0)) > straight*(values(1) - values(0))) return
          by_slip = edge_by_slip(model, state, next, side, edge)
-         if (abs(by_slip - edge) <= agreement*model%width(last)) return
+         if (abs(by_slip - edge) <= agreement(merge(2, 1, samples%is_integral))*model%width(last)) return
          error = max(error, min(abs(by_slip - edge), error_if_unknown*model%width(last)))
          edge = by_slip
       end subroutine correct_by_slip
@@ -417,6 +444,9 @@ contains
          end do
          samples%is_integral = allocated(model%scene%mesh%ends)
          if (.not. samples%is_integral) return
+         samples%traction = traction(outermost:other:side)
+         samples%width = model%width(outermost:other:side)/unit
+         samples%beyond = model%width(min(max(outermost - side, 1), model%nodes()))/unit
          total = 0.0_wp
          do i = 0, samples%number - 1
             total = total + samples%value(i)*model%width(outermost + side*i)/unit
@@ -428,21 +458,28 @@ contains
 
    !> Where the remaining friction vanishes, in intervals outwards from the outermost node. The exponent is `power` or, behind
    !> a growing stick zone, larger by one: in long zones that with the straighter fit, and in between a weighted mean, so that
-   !> rounding errors do not decide. Short zones: `power`.
-   pure real(wp) function distance_of_lack(samples, power) result(distance)
+   !> rounding errors do not decide. Short zones, and unequal intervals with a discrete solution: `power`.
+   real(wp) function distance_of_lack(samples, power) result(distance)
       type(samples_type), intent(in) :: samples
       real(wp), intent(in) :: power
       integer, parameter :: short = 8, steepness = 4
       real(wp), parameter :: clearly = 2.0_wp
+      type(samples_type) :: straight
       real(wp) :: steady, grown, weight
+      logical :: found
 
-      steady = bend(straightened(samples, power))
+      straight = straightened(samples, power)
+      if (straight%is_integral .and. straight%is_regular) then
+         call find_graded_distance(straight, distance, found)
+         if (found) return
+      end if
+      steady = bend(straight)
       grown = clearly*bend(straightened(samples, power + 1.0_wp))
       weight = 0.0_wp
       if (min(steady, grown) < unknown_bend) weight = min(max((samples%zone - short)/real(short, wp), 0.0_wp), 1.0_wp) &
                                                       *steady**steepness/(steady**steepness + grown**steepness)
       distance = 0.0_wp
-      if (weight < 1.0_wp) distance = (1.0_wp - weight)*refined_distance(straightened(samples, power))
+      if (weight < 1.0_wp) distance = (1.0_wp - weight)*refined_distance(straight)
       if (weight > 0.0_wp) distance = distance + weight*distance_to_zero(straightened(samples, power + 1.0_wp), .true.)
    end function distance_of_lack
 
@@ -557,7 +594,7 @@ contains
       real(wp) :: entries(1, -about:about), steps(2)
       integer :: j
 
-      has_known_error = .false.
+      has_known_error = allocated(model%scene%mesh%ends) .and. samples >= fewest
       if (allocated(model%scene%mesh%ends)) return
       if (samples < fewest .or. node - about < 1 .or. node + about > model%nodes()) return
       call model%compliance%entries(block_wp, [node], [(node + j, j=-about, about)], entries)
@@ -569,21 +606,43 @@ contains
    end function has_known_error
 
    !> See distance_to_zero; with a known discretisation error, the edge of its discrete solution.
-   pure real(wp) function refined_distance(samples) result(distance)
+   real(wp) function refined_distance(samples) result(distance)
       type(samples_type), intent(in) :: samples
+      logical :: found
 
       distance = distance_to_zero(samples, .false.)
-      if (samples%is_regular) distance = solved_distance(samples%inwards, samples%value, samples%power, distance)
+      if (.not. samples%is_regular) return
+      if (samples%is_integral) then
+         call find_graded_distance(samples, distance, found)
+      else
+         distance = solved_distance(samples%inwards, samples%value, samples%power, distance)
+      end if
    end function refined_distance
+
+   !> The same on unequal intervals; `distance` is unchanged if not `found`.
+   subroutine find_graded_distance(samples, distance, found)
+      type(samples_type), intent(in) :: samples
+      real(wp), intent(inout) :: distance
+      logical, intent(out) :: found
+      type(graded_solution_type) :: solution
+      real(wp) :: beyond
+
+      solution = new_graded_solution(samples%width, samples%power)
+      call solution%edge_beyond(samples%traction, samples%beyond, beyond, found)
+      if (found) distance = beyond + 0.5_wp
+   end subroutine find_graded_distance
 
    !> Uncertainty of the zero of nearly linear values, intervals: small with a known discretisation error, otherwise the
    !> distance of the zeros by near and by farther values.
    pure real(wp) function uncertainty(samples)
       type(samples_type), intent(in) :: samples
+      !> By the largest of unequal intervals: their discretisation error moves the edge (docs/verification.md).
+      real(wp), parameter :: by_largest = 0.005_wp
       real(wp) :: near, farther
       logical :: found(2)
 
       uncertainty = least_error
+      if (samples%is_integral) uncertainty = uncertainty + by_largest*maxval(samples%width)**2/sum(samples%width)
       if (samples%is_regular) return
       uncertainty = error_if_unknown
       if (samples%number < most_samples) return

@@ -13,7 +13,7 @@ module mfv_contact_model
    use mfv_contact_fields, only: contact_fields_type
    use mfv_kinds, only: pi, wp
    use mfv_lapack, only: ddot
-   use mfv_numerics, only: gauss_points
+   use mfv_quadrature, only: gauss_points
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
                           motion_upper_bulk, motion_wear, arm_unit
    use mfv_reference_indenter, only: indenter_type

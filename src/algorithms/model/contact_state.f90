@@ -24,13 +24,14 @@ module mfv_contact_state
       real(wp) :: dissipation = 0.0_wp, skipped_dissipation = 0.0_wp
       !> Work dissipated so far per unit of surface, force/length, shape (nodes).
       real(wp), allocatable :: friction_work(:)
-      !> With wear, in the present cycle: the sum of the magnitudes of the work per unit of surface, force/length, and that of
-      !> these times the pressure, force^2/length^3; both shape (nodes).
+      !> In the present cycle: the sum of the magnitudes of the work per unit of surface, force/length, and that of these times the
+      !> pressure, force^2/length^3; both shape (nodes), without wear (0).
       real(wp), allocatable :: cycle_work(:), pressure_work(:)
       !> Depth worn off both surfaces together, length, shape (nodes).
       real(wp), allocatable :: worn(:)
-      !> Area worn off in blocks of cycles that change the pressures by more than the tolerance of the wear, length^2.
-      real(wp) :: coarsely_worn = 0.0_wp
+      !> Area worn off in single cycles that change the pressures by more than the tolerance of the wear, and estimated error of
+      !> what is worn off in given blocks of cycles, length^2.
+      real(wp) :: coarsely_worn = 0.0_wp, wear_error = 0.0_wp
    contains
       procedure :: set_status
       procedure :: copy_from
@@ -46,9 +47,10 @@ module mfv_contact_state
 
 contains
 
-   !> Unloaded, separated state with `nodes` nodes.
-   pure function new_contact_state(nodes) result(state)
+   !> Unloaded, separated state with `nodes` nodes. `wears`: whether the surfaces do.
+   pure function new_contact_state(nodes, wears) result(state)
       integer, intent(in) :: nodes
+      logical, intent(in) :: wears
       type(contact_state_type) :: state
 
       state%fields = new_contact_fields(nodes)
@@ -56,7 +58,7 @@ contains
       allocate (state%slip_direction(nodes), source=0)
       allocate (state%memory(memory_size, nodes), source=0.0_wp)
       allocate (state%stuck_slip(nodes), state%friction_work(nodes), state%worn(nodes), source=0.0_wp)
-      allocate (state%cycle_work(nodes), state%pressure_work(nodes), source=0.0_wp)
+      allocate (state%cycle_work(merge(nodes, 0, wears)), state%pressure_work(merge(nodes, 0, wears)), source=0.0_wp)
    end function new_contact_state
 
    !> Set the statuses of the nodes of `mask`. A node that sticks holds at its present slip; one that slips at first contact has
@@ -94,6 +96,7 @@ contains
       self%pressure_work = other%pressure_work
       self%worn = other%worn
       self%coarsely_worn = other%coarsely_worn
+      self%wear_error = other%wear_error
    end subroutine copy_from
 
    !> State of node `node` for a friction law, with the given fields and coefficients of friction.
@@ -150,9 +153,10 @@ contains
       self%memory = reshape([(0.0_wp, i=1, memory_size*extra), self%memory, (0.0_wp, i=1, memory_size*extra)], &
                             [memory_size, size(self%status)])
       self%friction_work = [(0.0_wp, i=1, extra), self%friction_work, (0.0_wp, i=1, extra)]
+      self%worn = [(0.0_wp, i=1, extra), self%worn, (0.0_wp, i=1, extra)]
+      if (size(self%cycle_work) == 0) return
       self%cycle_work = [(0.0_wp, i=1, extra), self%cycle_work, (0.0_wp, i=1, extra)]
       self%pressure_work = [(0.0_wp, i=1, extra), self%pressure_work, (0.0_wp, i=1, extra)]
-      self%worn = [(0.0_wp, i=1, extra), self%worn, (0.0_wp, i=1, extra)]
    end subroutine widen
 
    pure integer function contact_nodes(self)

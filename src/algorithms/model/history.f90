@@ -1,5 +1,6 @@
 !> The load history: one record for every event or step end.
 module mfv_history
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_count
@@ -16,6 +17,9 @@ module mfv_history
       integer :: event_kind = 0, event_node = 0, event_count = 0
       !> Step of the load history, and number of linear solves so far.
       integer :: step = 0, linear_solves = 0
+      !> Of both bodies, if wanted: the largest tension along the surface and its x; the stress along the surface at a given x;
+      !> force/length^2 and length. NaN at events.
+      real(wp), dimension(2) :: tension = 0.0_wp, tension_x = 0.0_wp, surface_stress = 0.0_wp
    end type history_record_type
 
    type :: history_type
@@ -43,6 +47,11 @@ contains
       self%record(self%records) = history_record_type( &
                                   state%fields%motion, state%fields%force, state%dissipation, state%contact_nodes(), &
                                   state%stick_nodes(), kind, node, count, step, linear_solves)
+      associate (record => self%record(self%records))
+         record%tension = ieee_value(1.0_wp, ieee_quiet_nan)
+         record%tension_x = record%tension
+         record%surface_stress = record%tension
+      end associate
    end subroutine append
 
    !> Renumber the nodes after `extra` nodes were added before the first one.

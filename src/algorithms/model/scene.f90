@@ -1,21 +1,22 @@
 !> A scene: bodies, mesh, friction, load history and method. No files, no solution.
 module mfv_scene
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use mfv_body, only: body_type
+   use mfv_body, only: body_type, shape_matrix
    use mfv_compliance, only: coupling_full
    use mfv_friction, only: friction_type
    use mfv_interior, only: has_interior, interior_type, new_interior
    use mfv_kinds, only: pi, wp
    use mfv_material, only: plane_strain
-   use mfv_motions, only: motions, motion_count, control_keep, control_force, control_displacement
+   use mfv_motions, only: motions, motion_approach, motion_count, control_keep, control_force, control_displacement
+   use mfv_profile_sampling, only: sufficient_interval
    use mfv_surface_tractions, only: zone_list_type
    use mfv_wear, only: wear_type
    implicit none
    private
    public :: scene_type, both_rigid, mesh_request_type, step_type, method_type, control_keep, control_force, control_displacement, &
-             most_cycles, algorithm_mfv, algorithm_conventional, stepping_event, stepping_nominal, stepping_leap, stepping_auto, &
-             integration_second_order, integration_explicit, solver_auto, solver_dgesv, solver_reduced, solver_fft, &
-             algorithm_names, stepping_names, integration_names, solver_names, friction_tolerance_part
+             most_cycles, most_of_datum, algorithm_mfv, algorithm_conventional, stepping_event, stepping_nominal, stepping_leap, &
+             stepping_auto, integration_second_order, integration_explicit, solver_auto, solver_dgesv, solver_reduced, solver_fft, &
+             algorithm_names, stepping_names, integration_names, solver_names, friction_tolerance_part, most_by_points
 
    !> The Method of First Violation (dissertation section 2.3) or the conventional algorithm (2.2). Names here and below: values of
    !> the keys of &solver, in the order of the numbers.
@@ -34,6 +35,8 @@ module mfv_scene
    character(*), parameter :: integration_names = 'second_order explicit'
    !> Most cycles of a step.
    integer, parameter :: most_cycles = 1000000
+   !> Largest contact half-width over the datum of the displacements.
+   real(wp), parameter :: most_of_datum = 1.2_wp
 
    !> A step of the load history; targets are reached linearly from the previous step.
    type :: step_type
@@ -86,8 +89,9 @@ module mfv_scene
    !> then have an error of 0.3 of the wanted one as a median, and of 1.6 at most (docs/verification.md).
    real(wp), parameter :: friction_tolerance_part = 0.1_wp
 
-   !> Nodes of a mesh by default; and most nodes on account of an accuracy.
-   integer, parameter :: usual_nodes = 101, most_by_accuracy = 3001
+   !> Nodes of a mesh by default; and most nodes on account of an accuracy, of the points of a profile, and of these with
+   !> unequal intervals, whose compliance is a full matrix.
+   integer, parameter :: usual_nodes = 101, most_by_accuracy = 3001, most_by_points = 10001, most_refined = 2001
 
    !> Mesh settings of the user; what is not set is chosen from an estimate of the contact.
    type :: mesh_request_type
@@ -100,6 +104,8 @@ module mfv_scene
       !> Whether such intervals are to be chosen, small at the edges of contact and stick zones; and whether the number of intervals
       !> follows from the accuracy (set_accuracy).
       logical :: refined = .false., nodes_by_accuracy = .false.
+      !> Whether the number of nodes follows from the contact patches of a profile (follow_patches).
+      logical :: nodes_by_patches = .false.
       !> Whether `nodes` intervals cover the whole circle; only those near the contact are modelled.
       logical :: whole_circle = .false.
       !> Whether gaps are those of parabolas instead of circles (Hertz).
@@ -126,12 +132,15 @@ module mfv_scene
       type(step_type), allocatable :: steps(:)
    contains
       procedure :: set_accuracy
+      procedure :: default_nodes
+      procedure :: nodes_for_profile
       procedure :: fault
       procedure :: tangential
       procedure :: moves
       procedure :: modulus
       procedure :: curvature
       procedure :: dundurs_beta
+      procedure :: has_datum
       procedure :: datum
       procedure :: arc_radius
       procedure :: x_of_arc
@@ -186,14 +195,40 @@ contains
    end function allowed_in_friction
 
    !> Set the accuracy, and the number of nodes if that follows from it and a finer mesh is more accurate.
-   pure subroutine set_accuracy(self, accuracy)
+   subroutine set_accuracy(self, accuracy)
       class(scene_type), intent(inout) :: self
       real(wp), intent(in) :: accuracy
 
       self%method%accuracy = accuracy
-      if (self%mesh%nodes_by_accuracy .and. self%friction%converges()) &
-         self%mesh%nodes = min(self%mesh%nodes_for(accuracy), most_by_accuracy)
+      if (self%mesh%nodes_by_accuracy .and. self%friction%converges()) self%mesh%nodes = self%default_nodes()
    end subroutine set_accuracy
+
+   !> Number of nodes where the user gives none: that of the accuracy and of the points of a profile.
+   integer function default_nodes(self) result(nodes)
+      class(scene_type), intent(in) :: self
+
+      nodes = min(self%mesh%nodes_for(self%method%accuracy), most_by_accuracy)
+      nodes = max(nodes, min(self%nodes_for_profile(), merge(most_refined, most_by_points, self%mesh%refined)))
+   end function default_nodes
+
+   !> Odd number of equal intervals over the mesh that miss nothing of a profile that would change the pressures under the
+   !> largest load, on the average over the mesh; 0 without a profile or such a load, without an upper limit.
+   integer function nodes_for_profile(self) result(nodes)
+      class(scene_type), intent(in) :: self
+      real(wp) :: half_width, pressure, usual, interval
+
+      nodes = 0
+      half_width = min(self%lower%half_extent(), self%upper%half_extent())
+      if (self%mesh%half_width > 0.0_wp) half_width = min(half_width, self%mesh%half_width)
+      if (.not. allocated(self%steps) .or. .not. self%modulus() > 0.0_wp .or. half_width >= huge(1.0_wp)) return
+      pressure = 0.5_wp/half_width*max(maxval(self%steps%extreme(motion_approach, control_force)), &
+                                       self%modulus()*maxval(self%steps%extreme(motion_approach, control_displacement)))
+      if (.not. pressure > 0.0_wp) return
+      usual = 2.0_wp*half_width/usual_nodes
+      interval = min(sufficient_interval(self%lower, self%modulus(), pressure, usual), &
+                     sufficient_interval(self%upper, self%modulus(), pressure, usual))
+      if (interval < usual) nodes = 2*nint(min(half_width/interval, 1.0e9_wp)) + 1
+   end function nodes_for_profile
 
    !> Nodes with which the tractions have about the given error (root mean square over the contact, relative to the largest),
    !> without an upper limit; measured (docs/verification.md): on equal intervals 0.3 over the number of nodes, on refined ones 6
@@ -281,6 +316,13 @@ contains
          share = self%modulus()*(body%material%kolosov - 1.0_wp)/(4.0_wp*body%material%shear_modulus)
       end function share
    end function dundurs_beta
+
+   !> Whether the displacements are measured at a datum inside of bodies: half-planes and the like, not circles.
+   elemental logical function has_datum(self)
+      class(scene_type), intent(in) :: self
+
+      has_datum = .not. (self%lower%circular() .or. self%upper%circular() .or. self%lower%shape == shape_matrix)
+   end function has_datum
 
    !> Datum of the displacements of both bodies together, length: the mean of the logarithms of their datums, weighted with their
    !> flexibilities.

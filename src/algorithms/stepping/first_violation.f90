@@ -185,7 +185,7 @@ contains
    end function last_step
 
    !> Check that the increment was found. If `found` is false, stress drops have begun and the increment is to be found again.
-   !> Error MFV_NO_CONTINUATION.
+   !> Errors MFV_NO_CONTINUATION, MFV_NOT_CONVERGED.
    subroutine look_for_solution(path, progress, found, error)
       class(contact_path_type), intent(inout) :: path
       type(progress_type), intent(inout) :: progress
@@ -196,11 +196,9 @@ contains
       found = .not. (progress%increment%singular .or. progress%increment%diverges)
       if (found) return
       if (progress%increment%singular .and. path%system%gave_up) then
-         call path%end_here(MFV_NOT_CONVERGED, 'the iteration of the linear solver does not converge; use linear_solver='// &
-                            '''reduced'' in &solver', error)
+         call path%not_converged(error)
          return
-      end if
-      if (progress%increment%singular) then
+      else if (progress%increment%singular) then
          call path%no_continuation('the linear system is singular', error)
          return
       end if

@@ -9,10 +9,13 @@ module mfv_simulation
    use mfv_cycle, only: append_cycle, cycle_type, new_turning_point, turning_point_type
    use mfv_derivative_increments, only: differentiate_end
    use mfv_error, only: error_type
-   use mfv_contact_path, only: contact_path_type, new_contact_path, path_position_type, segment_type
+   use mfv_contact_path, only: contact_path_type, new_contact_path, path_position_type, saved_path_type, segment_type
    use mfv_conventional, only: apply_conventionally
    use mfv_error_bar, only: error_estimate_type
    use mfv_kinds, only: wp
+   use mfv_load_extremes, only: add_estimate, candidate_count, candidate_tension, candidate_von_mises, load_extremes_type, &
+                                most_rows, over_cycle, &
+                                over_rows, over_steps, slip_range_type
    use mfv_leap, only: apply_by_large_increments
    use mfv_load_way, only: load_summary_type
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_wear, control_keep, &
@@ -21,16 +24,18 @@ module mfv_simulation
    use mfv_observer, only: observer_type
    use mfv_scene
    use mfv_slip_zones, only: segment_start_type, slip_record_type
-   use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR
+   use mfv_state_interior, only: find_largest_tension, find_largest_von_mises, surface_stress_at
+   use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, MFV_INTERRUPTED, MFV_NO_CONTINUATION, MFV_SEPARATED
+   use mfv_stress_search, only: largest_type
    use mfv_straight, only: apply_directly
-   use mfv_wear_block, only: find_wear_block, work_of_wear
+   use mfv_wear_block, only: find_wear_block, wear_block_type, work_of_wear
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: simulation_type, position_type, restart_type, new_simulation, snapshot_type, sensitivity_type, history_events, &
-             history_steps, history_none
+   public :: simulation_type, position_type, restart_type, trial_type, new_simulation, snapshot_type, sensitivity_type
+   public :: history_events, history_steps, history_none, widen_with_zeros
    public :: states_reversals, states_steps, states_none, states_last_cycle
-   public :: mark_loading, mark_reversal, mark_return, mark_cycle_start, mark_count
+   public :: mark_loading, mark_reversal, mark_return, mark_cycle_start, mark_yield, mark_of, mark_count
 
    !> Records of the load history, in the order of the key &output history: one for every event, one for every step end, none.
    integer, parameter :: history_events = 1, history_steps = 2, history_none = 3
@@ -41,8 +46,14 @@ module mfv_simulation
    !> States stored for the last step with cycles: the start of the step, the reversal of its last complete cycle, the end of that
    !> cycle (with `reversal` 0 before the first: the start of the step), and its start.
    integer, parameter :: mark_loading = 1, mark_reversal = 2, mark_return = 3, mark_cycle_start = 4
-   !> The reversal of the incomplete cycle; and the number of marks.
-   integer, parameter :: mark_pending = 5, mark_count = 5
+   !> The reversal of the incomplete cycle. From the next ones on, most_rows for each (mark_of): the states of the present stretch
+   !> that may have the largest stresses (candidate_tension and so on); those of the last complete cycle, and of the whole load
+   !> history, for the von Mises stress of each body. And the number of marks.
+   integer, parameter :: mark_pending = 5, mark_candidate = mark_pending + 1
+   integer, parameter :: mark_last_cycle = mark_candidate + most_rows*candidate_count
+   integer, parameter :: mark_yield = mark_last_cycle + 2*most_rows, mark_count = mark_yield + 2*most_rows - 1
+   !> Rows in which the largest von Mises stress of the whole load history is searched for.
+   integer, parameter :: rows_of_yield = 3
 
    !> The state at the end of a step, or of one reversal of a step with cycles.
    type :: snapshot_type
@@ -68,6 +79,11 @@ module mfv_simulation
       integer :: failed_scene_step = 0, scene_steps_done = 0
       !> Slip zones of all segments so far.
       type(slip_record_type) :: slip
+      !> Extremes and slip of the present stretch: since the start of a cycle, the first row of &history, or the start.
+      type(load_extremes_type) :: extremes
+      type(slip_range_type) :: slip_range
+      !> Estimates of the largest von Mises stress of both bodies in the states of mark_yield, force/length^2.
+      real(wp) :: yield_estimate(rows_of_yield, 2) = -1.0_wp
       !> Summary of the steps taken, the last one possibly incomplete.
       type(load_summary_type) :: load_summary
       !> The present controls and loads.
@@ -105,6 +121,25 @@ module mfv_simulation
       type(load_type) :: load(motion_count)
    end type restart_type
 
+   !> A block of cycles of wear that the next computed cycle will judge, and all that it takes to try a shorter one.
+   type :: trial_type
+      !> Cycles of the block; 0: as many as the predicted change allows.
+      integer :: cycles = 0
+      !> Correction of the block before, which is worn with this one, length, shape (nodes).
+      real(wp), allocatable :: correction(:)
+      !> Whether its wear has begun; `block` and what follows are then known.
+      logical :: is_worn = .false.
+      type(wear_block_type) :: block
+      !> Depth that the first cycle after the block wears, length, shape (nodes); and whether it is to be worn off.
+      real(wp), allocatable :: settling(:)
+      logical :: settles = .false.
+      !> The start of the block: the state at the end of its first cycle. The last cycle only if there is no load history.
+      type(saved_path_type) :: contact
+      type(position_type) :: position
+      type(leg_type) :: leg
+      type(cycle_type), allocatable :: last_cycle
+   end type trial_type
+
    type, extends(position_type) :: simulation_type
       type(contact_path_type) :: contact
       !> States at the end of every step and reversal so far; the first `snapshot_count` entries are in use.
@@ -114,6 +149,8 @@ module mfv_simulation
       integer :: keep_history = history_events
       !> See states_reversals and so on.
       integer :: keep_states = states_reversals
+      !> x at which history records have the stress along the surface, with the largest tension; unallocated: none.
+      real(wp), allocatable :: stress_at
       !> Checksums of the load history up to the end of every step, if history or states are kept; the first `load_summary%steps`
       !> are in use.
       integer(int64), allocatable, private :: history_checksums(:)
@@ -123,6 +160,8 @@ module mfv_simulation
       type(sensitivity_type), allocatable :: sensitivity
       !> The current step.
       type(leg_type) :: leg
+      !> The present block of cycles of wear, if there is one.
+      type(trial_type), allocatable :: trial
       !> Whether the start of each segment is stored in `restart`.
       logical :: keep_restart = .false.
       type(restart_type) :: restart
@@ -136,6 +175,9 @@ module mfv_simulation
       procedure :: history_checksum
       procedure :: passed_through
       procedure :: padded
+      procedure :: stretch
+      procedure :: ends_with_cycle
+      procedure :: find_extremes
    end type simulation_type
 
 contains
@@ -220,31 +262,52 @@ contains
       integer, intent(in) :: before, segments
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable :: error
+      real(wp), parameter :: shorter = 0.25_wp
       logical :: is_last
 
       if (allocated(self%estimate)) deallocate (self%estimate)
       if (allocated(self%sensitivity)) deallocate (self%sensitivity)
       if (self%keep_restart) call self%note_restart()
       if (self%leg%number == 0) call begin_step(self, step)
-      call apply_leg(self, step, before, segments, observer, error)
+      if (.not. block_is_due(self)) call complete_segment(self, step, before, segments, observer, error)
+      if (block_is_due(self) .and. .not. allocated(error)) call apply_block(self, step, before, segments, observer, error)
+      if (allocated(error)) then
+         if (block_failed(self, error)) then
+            call shorten_block(self, shorter)
+            return
+         end if
+      end if
+      if (self%keep_history /= history_none) &
+         call self%contact%record(merge(event_stopped, event_step_end, allocated(error)), 0, 0, self%leg%segment%step)
       if (allocated(error)) then
          call end_step_early(self, step, error)
          return
       end if
+      if (allocated(self%stress_at) .and. self%keep_history /= history_none) call record_surface(self%contact, self%stress_at)
       associate (i => self%leg%number)
-         if (step%cycles > 0) call complete_leg(self, i, step%turns(), self%leg%cycle)
-         if (wears(self, step)) call apply_wear(self, step, before, segments, error)
-         if (allocated(error)) then
-            call end_step_early(self, step, error)
-            return
-         end if
          is_last = i == step%segments()
-         if (mod(i, step%turns()) == 0 .and. step%steady_tolerance > 0.0_wp) is_last = is_last .or. is_steady(self, step)
+         if (.not. is_last .and. mod(i, step%turns()) == 0 .and. step%steady_tolerance > 0.0_wp) is_last = is_steady(self, step)
          if (keeps_state(self, step, is_last)) call take_snapshot(self, self%steps_done + 1, i)
          i = i + 1
       end associate
       if (is_last) call end_step(self, step)
    end subroutine advance_segment
+
+   !> Apply the loads of the present segment; note the extremes, complete the cycle that it ends, and plan its wear.
+   subroutine complete_segment(self, step, before, segments, observer, error)
+      class(simulation_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      integer, intent(in) :: before, segments
+      class(observer_type), intent(inout), optional :: observer
+      type(error_type), allocatable, intent(out) :: error
+
+      call apply_leg(self, step, before, segments, observer, error)
+      if (allocated(error)) return
+      call note_extremes(self, step)
+      if (step%cycles == 0) return
+      call complete_leg(self, self%leg%number, step%turns(), self%leg%cycle)
+      if (wears(self, step)) call plan_block(self, step)
+   end subroutine complete_segment
 
    !> Whether the present segment ends a cycle whose wear changes the gaps.
    pure logical function wears(self, step)
@@ -255,47 +318,218 @@ contains
               self%contact%model%tangential
    end function wears
 
-   !> Wear the surfaces by the block of cycles that the present one begins, under constant loads, and skip the others, which
-   !> dissipate what wears the surfaces. It is not interrupted: a restart begins at the start of a load segment.
-   subroutine apply_wear(self, step, before, segments, error)
+   !> Judge the block of cycles of wear before the present cycle by this cycle. If its error is above the tolerance, go back to its
+   !> start and plan a shorter one, else plan the block that begins with this cycle. The first cycle of a step wears alone, since it
+   !> often dissipates otherwise than those that follow; so do the two after each block: the slip that the wear of a block causes at
+   !> once is not that of the cycles that follow. A block may err by the part `part` of the tolerance, since errors add up.
+   subroutine plan_block(self, step)
+      class(simulation_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      real(wp), parameter :: safety = 0.9_wp, smallest = 0.1_wp, largest = 5.0_wp, part = 0.5_wp
+      real(wp), allocatable :: correction(:)
+      type(wear_block_type) :: next
+      real(wp) :: error, factor
+      integer :: cycles
+
+      cycles = 0
+      allocate (correction(self%contact%model%nodes()), source=0.0_wp)
+      associate (wear => self%contact%model%scene%wear)
+         if (allocated(self%trial)) then
+            call find_wear_block(self%contact, cycle_work(self), 1, 1, is_pressed(self), next)
+            if (self%trial%block%cycles > 1 .and. .not. allocated(self%trial%settling)) then
+               self%trial%settling = next%depth
+               self%trial%settles = .true.
+               return
+            end if
+            call judge_block(self, next, correction, error)
+            factor = largest
+            if (error > 0.0_wp) factor = min(max(safety*sqrt(part*wear%tolerance/error), smallest), largest)
+            cycles = max(int(factor*max(self%trial%block%cycles, 2)), 1)
+            if (self%trial%block%cycles > 1 .and. wear%block > 0) then
+               self%contact%state%wear_error = self%contact%state%wear_error + error*self%leg%cycle%worn_area
+            else if (self%trial%block%cycles > 1 .and. error > part*wear%tolerance) then
+               call shorten_block(self, factor)
+               return
+            end if
+            deallocate (self%trial)
+         end if
+         if (wear%block > 0) cycles = wear%block
+         if (self%leg%cycle%number == 1) cycles = 1
+      end associate
+      allocate (self%trial)
+      self%trial%cycles = min(cycles, most_worn_at_once(self, step))
+      call move_alloc(correction, self%trial%correction)
+   end subroutine plan_block
+
+   !> Correction of the depth of the last block, length, shape (nodes), and its error relative to all that is worn; `next`: of the
+   !> present cycle.
+   subroutine judge_block(self, next, correction, error)
+      class(simulation_type), intent(in) :: self
+      type(wear_block_type), intent(in) :: next
+      real(wp), allocatable, intent(out) :: correction(:)
+      real(wp), intent(out) :: error
+      real(wp), allocatable :: settling(:)
+
+      allocate (settling(0))
+      if (allocated(self%trial%settling)) settling = self%trial%settling
+      call widen_with_zeros(settling, size(next%depth))
+      call self%trial%block%judge(settling, next%depth, self%contact%state%worn, self%contact%model%width, correction, error)
+   end subroutine judge_block
+
+   !> Most cycles of the block that begins with the present one.
+   pure integer function most_worn_at_once(self, step) result(most)
+      class(simulation_type), intent(in) :: self
+      type(step_type), intent(in) :: step
+
+      most = max(step%cycles - self%leg%number/step%turns() - 1, 1)
+   end function most_worn_at_once
+
+   !> Friction work of the cycle that ends here per unit of surface, force/length, shape (nodes).
+   function cycle_work(self) result(work)
+      class(simulation_type), intent(in) :: self
+      real(wp), allocatable :: work(:)
+      type(contact_state_type) :: start
+
+      start = self%padded(self%marks(mark_cycle_start))
+      work = self%contact%state%friction_work - start%friction_work
+   end function cycle_work
+
+   !> Whether the normal force is given.
+   pure logical function is_pressed(self)
+      class(simulation_type), intent(in) :: self
+
+      is_pressed = self%load(motion_approach)%control == control_force
+   end function is_pressed
+
+   !> Whether a planned block of wear is to be worn off.
+   pure logical function block_is_due(self)
+      class(simulation_type), intent(in) :: self
+
+      block_is_due = .false.
+      if (allocated(self%trial)) block_is_due = self%trial%settles .or. .not. self%trial%is_worn
+   end function block_is_due
+
+   !> Whether a shorter block may do without an error in the wear or the cycle after it.
+   pure logical function block_failed(self, error)
+      class(simulation_type), intent(in) :: self
+      type(error_type), intent(in) :: error
+
+      block_failed = .false.
+      if (allocated(self%trial)) block_failed = self%trial%is_worn .and. self%trial%block%cycles > 1 .and. &
+                                                self%contact%model%scene%wear%block == 0 .and. error%status /= MFV_INTERRUPTED
+   end function block_failed
+
+   !> Go back to the start of the present block, and plan one whose cycles are the part `factor` of it.
+   subroutine shorten_block(self, factor)
+      class(simulation_type), intent(inout) :: self
+      real(wp), intent(in) :: factor
+      integer(int64) :: iterations, products
+      integer :: solves
+
+      associate (trial => self%trial, contact => self%contact)
+         solves = contact%system%solves
+         iterations = contact%system%iterations
+         products = contact%system%products
+         call contact%restore(trial%contact)
+         contact%system%solves = solves
+         contact%system%iterations = iterations
+         contact%system%products = products
+         self%position_type = trial%position
+         self%leg = trial%leg
+         if (allocated(trial%last_cycle)) self%cycles = [trial%last_cycle]
+         if (self%keep_states == states_last_cycle) call drop_snapshots(self)
+         trial%cycles = max(int(factor*trial%block%cycles), 1)
+         trial%is_worn = .false.
+         trial%settles = .false.
+         if (allocated(trial%settling)) deallocate (trial%settling)
+      end associate
+   end subroutine shorten_block
+
+   !> Note the start of the present block in `trial`, for shorter ones and for a restart.
+   subroutine note_block(self)
+      class(simulation_type), intent(inout) :: self
+
+      if (self%keep_restart) call self%note_restart()
+      associate (trial => self%trial)
+         call self%contact%save_to(trial%contact)
+         trial%position = self%position_type
+         trial%leg = self%leg
+         if (self%keep_history == history_none) trial%last_cycle = self%cycles(1)
+         trial%is_worn = .true.
+      end associate
+   end subroutine note_block
+
+   !> Wear the surfaces by the planned block of cycles that the present one begins, under constant loads, and by the correction of
+   !> the block before. Skip the cycles that are not computed; they dissipate what wears the surfaces.
+   subroutine apply_block(self, step, before, segments, observer, error)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
       integer, intent(in) :: before, segments
+      class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
-      type(contact_state_type) :: start
-      type(load_type) :: targets(motion_count)
-      real(wp), allocatable :: depth(:)
-      integer :: cycles, turns
-      logical :: is_coarse
+      integer :: turns
 
       turns = step%turns()
-      do
-         start = self%padded(self%marks(mark_cycle_start))
-         allocate (depth(self%contact%model%nodes()))
-         call find_wear_block(self%contact, self%contact%state%friction_work - start%friction_work, &
-                              most_worn_at_once(self, step%cycles - self%leg%number/turns + 1), &
-                              self%load(motion_approach)%control == control_force, cycles, depth, is_coarse)
-         if (.not. self%contact%lengthens_for(depth > 0.0_wp)) exit
-         deallocate (depth)
-      end do
+      associate (trial => self%trial, contact => self%contact)
+         if (trial%settles) then
+            trial%settles = .false.
+            call wear_by(self, trial%settling, step, before, segments, observer, error)
+            return
+         end if
+         do
+            call find_wear_block(contact, cycle_work(self), trial%cycles, most_worn_at_once(self, step), is_pressed(self), &
+                                 trial%block)
+            if (.not. contact%lengthens_for(trial%block%depth > 0.0_wp)) exit
+            call widen_with_zeros(trial%correction, contact%model%nodes())
+         end do
+         call note_block(self)
+         call wear_by(self, max(trial%block%depth + trial%correction, -contact%state%worn), step, before, segments, observer, error)
+         if (allocated(error)) return
+         call contact%state%skip(contact%model%width, work_of_wear(contact%model, trial%block%depth - trial%block%first &
+                                                                   + trial%correction))
+         associate (cycles => trial%block%cycles)
+            if (cycles == 1 .and. trial%block%change > contact%model%scene%wear%tolerance) &
+               contact%state%coarsely_worn = contact%state%coarsely_worn + contact%model%force(trial%block%depth)
+            self%cycles_done = self%cycles_done + cycles - 1
+            self%leg%number = self%leg%number + turns*(cycles - 1)
+            self%cycles(self%cycle_count)%block = cycles
+         end associate
+      end associate
+      if (self%leg%cycle%number == 1 .or. self%leg%number == step%segments() .or. self%contact%model%scene%wear%block == 1) &
+         deallocate (self%trial)
+   end subroutine apply_block
+
+   !> Wear the surfaces by `depth`, length, shape (nodes), under the present loads.
+   subroutine wear_by(self, depth, step, before, segments, observer, error)
+      class(simulation_type), intent(inout) :: self
+      real(wp), intent(in) :: depth(:)
+      type(step_type), intent(in) :: step
+      integer, intent(in) :: before, segments
+      class(observer_type), intent(inout), optional :: observer
+      type(error_type), allocatable, intent(out) :: error
+      type(load_type) :: targets(motion_count)
+
       call self%contact%begin_wear(depth)
       targets = self%load
       targets(motion_wear) = load_type(control_displacement, 1.0_wp)
       if (any(in_contact(self%contact%state%status))) then
          call begin_segment(self, targets, step, before, segments)
-         call apply_segment(self, error=error)
+         call apply_segment(self, observer, error)
       else
          call self%contact%wear_at_once()
       end if
       call self%contact%end_wear()
-      if (is_coarse) self%contact%state%coarsely_worn = self%contact%state%coarsely_worn + self%contact%model%force(depth)
-      call self%contact%state%skip(self%contact%model%width, work_of_wear(self%contact%model, depth)*(cycles - 1)/cycles)
-      self%cycles_done = self%cycles_done + cycles - 1
-      self%leg%number = self%leg%number + turns*(cycles - 1)
-      self%cycles(self%cycle_count)%block = cycles
-      self%leg%cycle%dissipation_before = self%leg%cycle%dissipation()
-      self%leg%cycle%block_before = cycles
-   end subroutine apply_wear
+   end subroutine wear_by
+
+   !> Extend the values of all nodes by zeros at either end to `nodes` values.
+   pure subroutine widen_with_zeros(values, nodes)
+      real(wp), allocatable, intent(inout) :: values(:)
+      integer, intent(in) :: nodes
+      integer :: i, extra
+
+      extra = (nodes - size(values))/2
+      values = [(0.0_wp, i=1, extra), values, (0.0_wp, i=1, extra)]
+   end subroutine widen_with_zeros
 
    !> Whether the cycles of a step have become steady. With wear also the change that the remaining cycles would make, each as much
    !> as those of this block, must be within the tolerance: that of the tractions, and that of the worn area relative to itself.
@@ -314,26 +548,6 @@ contains
          is_steady = blocks*change_since(self, start) <= tolerance .and. blocks*(worn - cycle%worn_area) <= tolerance*worn
       end associate
    end function is_steady
-
-   !> Most cycles of a block of wear that begins with the present one, at most `remaining`. The first cycle of a step wears alone,
-   !> since it often dissipates otherwise than those that follow. While the dissipation of computed cycles still changes by more
-   !> than the tolerance, blocks become twice as long at most.
-   pure integer function most_worn_at_once(self, remaining) result(most)
-      class(simulation_type), intent(in) :: self
-      integer, intent(in) :: remaining
-      real(wp) :: dissipation
-
-      most = remaining
-      associate (wear => self%contact%model%scene%wear, cycle => self%leg%cycle)
-         if (wear%block > 0) return
-         dissipation = cycle%dissipation()
-         if (cycle%number == 1) then
-            most = 1
-         else if (abs(dissipation - cycle%dissipation_before) > wear%tolerance*dissipation) then
-            most = min(2*cycle%block_before, remaining)
-         end if
-      end associate
-   end function most_worn_at_once
 
    !> Begin the next cycle at the present state: the first one, or one after wear.
    subroutine restart_cycle(self)
@@ -355,12 +569,18 @@ contains
                     (self%keep_states == states_steps .and. is_last .and. .not. step%is_passed)
       if (self%keep_states /= states_last_cycle) return
       keeps_state = .not. step%is_passed
-      if (step%cycles == 0 .or. mod(self%leg%number, step%turns()) /= 1) return
+      if (step%cycles > 0 .and. mod(self%leg%number, step%turns()) == 1) call drop_snapshots(self)
+   end function keeps_state
+
+   !> Remove the states of the present step.
+   subroutine drop_snapshots(self)
+      class(simulation_type), intent(inout) :: self
+
       do while (self%snapshot_count > 0)
          if (self%snapshots(self%snapshot_count)%step /= self%steps_done + 1) exit
          self%snapshot_count = self%snapshot_count - 1
       end do
-   end function keeps_state
+   end subroutine drop_snapshots
 
    !> Complete a step.
    subroutine end_step(self, step)
@@ -368,6 +588,7 @@ contains
       type(step_type), intent(in) :: step
       integer :: cycles
 
+      if (allocated(self%trial)) deallocate (self%trial)
       cycles = (self%leg%number - 1)/step%turns()
       self%leg%number = 0
       self%steps_done = self%steps_done + 1
@@ -379,10 +600,13 @@ contains
       call note_history_checksum(self, step)
    end subroutine end_step
 
-   !> Store the restart state at the start of a segment.
+   !> Store the restart state at the start of a segment, unless that of a block of wear still counts.
    subroutine note_restart(self)
       class(simulation_type), intent(inout) :: self
 
+      if (allocated(self%trial)) then
+         if (self%trial%is_worn) return
+      end if
       associate (r => self%restart, system => self%contact%system)
          r%path = self%contact%path_position_type
          r%records = self%contact%history%records
@@ -437,6 +661,7 @@ contains
       type(step_type), intent(in) :: step
       integer :: i
 
+      if (allocated(self%trial)) deallocate (self%trial)
       call self%load_summary%add(step)
       self%leg%number = 1
       do i = 1, motion_count
@@ -468,13 +693,31 @@ contains
       type(error_type), intent(in) :: error
 
       self%outcome = error%status
-      self%message = error%message
+      self%message = error%message//hint_of_datum(self)
       if (allocated(step%path)) self%message = 'row '//to_text(step%row + mod(self%leg%number - 1, step%turns()))//', cycle '// &
-                                               to_text(1 + (self%leg%number - 1)/step%turns())//': '//error%message
+                                               to_text(1 + (self%leg%number - 1)/step%turns())//': '//self%message
       self%leg%number = 0
       self%failed_step = self%steps_done + 1
       call note_history_checksum(self, step)
    end subroutine end_step_early
+
+   !> A prescribed approach ends where the contact is wider than its datum: the compliance of a flat contact of the half-width a is
+   !> proportional to ln(2 d/a), and where it vanishes, the contact grows without approach.
+   pure function hint_of_datum(self) result(hint)
+      class(simulation_type), intent(in) :: self
+      character(:), allocatable :: hint
+      real(wp) :: half_width
+
+      hint = ''
+      associate (scene => self%contact%model%scene)
+         if (self%outcome /= MFV_NO_CONTINUATION .and. self%outcome /= MFV_SEPARATED) return
+         if (self%leg%segment%load(motion_approach)%control /= control_displacement .or. .not. scene%has_datum()) return
+         half_width = self%contact%half_width() + 0.5_wp*self%contact%model%interval()
+         if (half_width > most_of_datum*scene%datum()) &
+            hint = '; the contact half-width of '//to_text(half_width, 3)//' exceeds the datum '//to_text(scene%datum(), 3)// &
+                   ', which ends the approach: set a larger datum in &body, or prescribe normal_force'
+      end associate
+   end function hint_of_datum
 
    !> Add a completed step to the checksum of the load history: its controls and targets, and its final state.
    subroutine note_history_checksum(self, step)
@@ -531,7 +774,7 @@ contains
       class(simulation_type), intent(inout) :: self
       integer :: i
 
-      do i = 1, mark_count
+      do i = 1, mark_pending
          self%marks(i)%step = 0
       end do
       self%leg%cycle = cycle_type()
@@ -584,8 +827,167 @@ contains
       call set_mark(self, mark_return, leg)
       if (cycle%number == 1) cycle%first_dissipation = cycle%dissipation()
       if (cycle%number == 1) cycle%first_slip = cycle%slip()
+      call complete_extremes(self, cycle)
       call append_cycle(self%cycles, self%cycle_count, cycle, self%keep_history == history_none)
    end subroutine complete_leg
+
+   !> Note what the state at the end of the present segment adds to the extremes of its stretch.
+   subroutine note_extremes(self, step)
+      class(simulation_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      integer :: i, turn
+      integer :: place(candidate_count), yield_place
+
+      turn = 1 + mod(self%leg%number - 1, step%turns())
+      if (merge(turn, 0, step%cycles > 0) == 1 .or. (step%row == 1 .and. self%leg%number == 1)) then
+         self%extremes = load_extremes_type(stretch=over_cycle, step=self%steps_done + 1)
+         if (step%row > 0) self%extremes%stretch = over_rows
+         self%slip_range = slip_range_type()
+      end if
+      associate (extremes => self%extremes, contact => self%contact)
+         i = turn
+         if (extremes%stretch == over_rows) i = step%row + turn - 1
+         if (extremes%stretch == over_steps) i = self%steps_done + 1
+         call extremes%add_state(contact%model, contact%state, self%slip_range, i, step%friction, place)
+         do i = 1, candidate_count
+            if (place(i) > 0) call set_mark(self, mark_of(mark_candidate, i, place(i)), self%leg%number)
+         end do
+         do i = 1, size(candidate_von_mises)
+            associate (candidate => candidate_von_mises(i))
+               if (place(candidate) == 0) cycle
+               call add_estimate(self%yield_estimate(:, i), extremes%estimate(place(candidate), candidate), yield_place)
+               if (yield_place > 0) call set_mark(self, mark_of(mark_yield, i, yield_place), self%leg%number)
+            end associate
+         end do
+      end associate
+   end subroutine note_extremes
+
+   !> Add the largest tensions, and the stresses along the surface at `x`, to the last history record.
+   subroutine record_surface(contact, x)
+      type(contact_path_type), intent(inout) :: contact
+      real(wp), intent(in) :: x
+      type(largest_type) :: largest
+      logical :: available
+      integer :: side
+
+      associate (record => contact%history%record(contact%history%records))
+         do side = 1, size(record%tension)
+            record%surface_stress(side) = surface_stress_at(contact%model, contact%state, side == 2, x)
+            call find_largest_tension(contact%model, contact%state, side == 2, largest, available)
+            if (.not. available) cycle
+            record%tension(side) = largest%value
+            record%tension_x(side) = largest%x
+         end do
+      end associate
+   end subroutine record_surface
+
+   !> The extremes of a complete cycle. The search for the largest tensions is skipped if they repeat those of the cycle before.
+   subroutine complete_extremes(self, cycle)
+      class(simulation_type), intent(inout) :: self
+      type(cycle_type), intent(inout) :: cycle
+      integer :: i, j, candidate
+
+      cycle%extremes = self%extremes
+      do i = 1, size(candidate_tension)
+         candidate = candidate_tension(i)
+         if (cycle%number > 1) then
+            associate (before => self%cycles(self%cycle_count)%extremes)
+               cycle%extremes%searched(candidate) = before%searched(candidate)
+               if (self%extremes%is_repeated(before, candidate)) cycle
+            end associate
+         end if
+         call search(self, mark_of(mark_candidate, candidate, 1), candidate, cycle%extremes)
+      end do
+      do i = 1, size(candidate_von_mises)
+         do j = 1, count(cycle%extremes%row(:, candidate_von_mises(i)) > 0)
+            self%marks(mark_of(mark_last_cycle, i, j)) = self%marks(mark_of(mark_candidate, candidate_von_mises(i), j))
+         end do
+      end do
+   end subroutine complete_extremes
+
+   !> The mark of a row: `first` is that of the first row of the first stress, `number` that of the stress.
+   pure integer function mark_of(first, number, row) result(mark)
+      integer, intent(in) :: first, number, row
+
+      mark = first + (number - 1)*most_rows + row - 1
+   end function mark_of
+
+   !> Search for a largest stress in the states of its marks from `first` on, the most promising ones first; none where no state has
+   !> it.
+   subroutine search(self, first, candidate, extremes)
+      class(simulation_type), intent(in) :: self
+      integer, intent(in) :: first, candidate
+      type(load_extremes_type), intent(inout) :: extremes
+      type(largest_type) :: largest
+      logical :: available, is_left(most_rows)
+      !> An estimate is not smaller than this part of a stress that is among the largest.
+      real(wp), parameter :: least = 0.85_wp
+      integer :: i, number
+
+      associate (found => extremes%searched(candidate), estimates => extremes%estimate(:, candidate))
+         found%row = 0
+         is_left = extremes%row(:, candidate) > 0
+         do number = 1, count(is_left)
+            i = maxloc(estimates, dim=1, mask=is_left)
+            is_left(i) = .false.
+            if (found%row > 0 .and. estimates(i) < least*found%value) exit
+            call find_largest(self%padded(self%marks(first + i - 1)))
+            if (.not. available) exit
+            call found%raise(largest%value, extremes%row(i, candidate), largest%x, largest%y)
+         end do
+      end associate
+
+   contains
+
+      subroutine find_largest(state)
+         type(contact_state_type), intent(in) :: state
+
+         if (any(candidate == candidate_tension)) then
+            call find_largest_tension(self%contact%model, state, candidate == candidate_tension(2), largest, available)
+         else
+            call find_largest_von_mises(self%contact%model, state, candidate == candidate_von_mises(2), largest, available)
+         end if
+      end subroutine find_largest
+   end subroutine search
+
+   !> Whether the extremes are those of the last complete cycle.
+   pure logical function ends_with_cycle(self)
+      class(simulation_type), intent(in) :: self
+
+      ends_with_cycle = self%cycle_count > 0
+      if (ends_with_cycle) ends_with_cycle = self%cycles(self%cycle_count)%step >= self%extremes%step
+   end function ends_with_cycle
+
+   !> What the extremes are taken over, see mfv_load_extremes.
+   pure integer function stretch(self)
+      class(simulation_type), intent(in) :: self
+
+      stretch = self%extremes%stretch
+      if (ends_with_cycle(self)) stretch = self%cycles(self%cycle_count)%extremes%stretch
+   end function stretch
+
+   !> The extremes of the last complete cycle or, without one, of the rows of &history or all steps so far; of rows that follow the
+   !> cycles, or a first cycle that is not complete: of these. `von_mises`: whether to search for the largest von Mises stresses.
+   subroutine find_extremes(self, von_mises, extremes)
+      class(simulation_type), intent(in) :: self
+      logical, intent(in) :: von_mises
+      type(load_extremes_type), intent(out) :: extremes
+      integer :: i
+
+      extremes = self%extremes
+      if (ends_with_cycle(self)) then
+         extremes = self%cycles(self%cycle_count)%extremes
+      else
+         do i = 1, size(candidate_tension)
+            call search(self, mark_of(mark_candidate, candidate_tension(i), 1), candidate_tension(i), extremes)
+         end do
+      end if
+      if (.not. von_mises) return
+      do i = 1, size(candidate_von_mises)
+         call search(self, merge(mark_of(mark_last_cycle, i, 1), mark_of(mark_candidate, candidate_von_mises(i), 1), &
+                                 ends_with_cycle(self)), candidate_von_mises(i), extremes)
+      end do
+   end subroutine find_extremes
 
    !> Largest change of a traction since the state `before` on the same mesh, relative to the largest traction so far.
    pure real(wp) function change_since(self, before)
@@ -661,8 +1063,6 @@ contains
                                  self%contact%slip_zone_nodes, self%contact%system%tolerance)
       self%load%control = targets%control
       self%load%value = targets%value
-      if (self%keep_history /= history_none) &
-         call self%contact%record(merge(event_stopped, event_step_end, allocated(error)), 0, 0, self%leg%segment%step)
    end subroutine apply_leg
 
    !> Give the prescribed motions of a path the values of its `targets`, which they have reached but for round-off: another segment

@@ -1,4 +1,4 @@
-!> The wear of a block of cycles, from the friction work of one of them.
+!> The wear of a block of cycles, from the friction work of the cycle at its start and of that after it.
 !>
 !> The depth of wear per cycle is r, the coefficient times the friction work of the computed cycle (Archard: over the coefficient of
 !> friction, which is the integral of the pressure over the slip path). Over a block of N cycles the pressure moves from where
@@ -10,8 +10,20 @@
 !>
 !> C is the compliance and d the change of the approach. Nodes that do not slip have their present pressure p. The gap is zero at
 !> nodes that slip in the cycle or are in contact, else the present one. All nodes that slip in the cycle are thus loaded at once,
-!> and coupling is neglected, in the prediction of P - p only: short blocks wear by N r. Other nodes have the r/p of the nearest
-!> ones.
+!> and coupling is neglected. Other nodes have the r/p of the nearest ones.
+!>
+!> The two cycles after the block, each alone, tell its error. The first of them wears by f1, with slip that the wear of the block
+!> causes; the next one, f2, with f of one cycle (N = 1) before the block, tells what the N + 1 cycles wear: by t = (N + 1) f +
+!> N (f2 - f)/2, the trapezoidal rule. The correction of the depth is e = t - h - f1, damped as the block is by the pressures q that
+!> it causes:
+!>
+!>     C q - d + N (r/p) q = -e in contact after the block, q = 0 elsewhere;   force of q = 0, or d = 0;   c = e + N (r/p) q,
+!>
+!> and once more, so that pressures that have come to equilibrium stay there. With it the block is of second order in N, whatever
+!> the prediction neglects: Rosenbrock's method with two stages and an approximate Jacobian (Verwer, Spee, Blom and Hundsdorfer
+!> 1999, SIAM J. Sci. Comput. 20, 1456: ROS2 with gamma = 1, damped further). The error of first order is abs(c), to which the
+!> estimate adds N abs(f2 - f1 - (f2 - f)/(N + 1))/2: if f2 still depends on the wear of the block, the slip that this wear causes
+!> would be taken for that of every cycle, and wear feed on itself.
 module mfv_wear_block
    use mfv_compliance, only: block_wp
    use mfv_contact_model, only: contact_model_type
@@ -24,63 +36,143 @@ module mfv_wear_block
    use mfv_wear, only: wear_archard
    implicit none
    private
-   public :: find_wear_block, work_of_wear
+   public :: wear_block_type, find_wear_block, work_of_wear
 
    !> The problem of a block: nodes near the contact, their softness r/p per cycle, pressure p, gap without any pressure on them,
-   !> arm and width, and the compliance between them; in terms of the modulus and the length of the mesh.
+   !> arm and width, and the compliance between them; in terms of the modulus and the `length` of the mesh.
    type :: problem_type
       integer, allocatable :: node(:)
       real(wp), allocatable :: softness(:), pressure(:), opening(:), arm(:), width(:), compliance(:, :)
       logical :: presses = .true.
+      real(wp) :: length = 0.0_wp
    end type problem_type
+
+   type :: wear_block_type
+      integer :: cycles = 1
+      !> Depth of the wear of the block, and of its first cycle: length, shape (nodes).
+      real(wp), allocatable :: depth(:), first(:)
+      !> Predicted change of the pressures or of the wear over the block, see change_of.
+      real(wp) :: change = 0.0_wp
+      type(problem_type), private :: problem
+   contains
+      procedure :: judge
+   end type wear_block_type
 
 contains
 
-   !> The number of cycles of a block, at most `remaining`, and the depth of their wear (length, shape (nodes)), from the friction
-   !> work per unit of surface of its first cycle, whose end is the present state. `presses`: whether the normal force is given.
-   !> The contact may reach the end of the mesh: wear beyond it is missing. `is_coarse`: the change is above the tolerance, in one
-   !> cycle or in a block of a given number of them.
-   subroutine find_wear_block(path, work, remaining, presses, cycles, depth, is_coarse)
+   !> A block from the friction work per unit of surface of its first cycle, whose end is the present state. `cycles`: their number;
+   !> 0: as many as the predicted change allows, at most `most`. `presses`: whether the normal force is given. The contact may
+   !> reach the end of the mesh: wear beyond it is missing.
+   subroutine find_wear_block(path, work, cycles, most, presses, block)
       type(contact_path_type), intent(in) :: path
       real(wp), intent(in) :: work(:)
-      integer, intent(in) :: remaining
+      integer, intent(in) :: cycles, most
       logical, intent(in) :: presses
-      integer, intent(out) :: cycles
-      real(wp), intent(out) :: depth(:)
-      logical, intent(out) :: is_coarse
+      type(wear_block_type), intent(out) :: block
       integer, parameter :: most_trials = 20
       real(wp), parameter :: safety = 0.9_wp, smallest = 0.1_wp
-      type(problem_type) :: problem
       real(wp), allocatable :: pressure(:)
-      real(wp) :: change, worn
+      real(wp) :: worn
       integer :: trial, margin, n
 
-      depth = 0.0_wp
-      is_coarse = .false.
-      cycles = remaining
+      allocate (block%depth(size(work)), block%first(size(work)), source=0.0_wp)
+      block%cycles = merge(cycles, most, cycles > 0)
       margin = size(work)/8
-      problem%presses = presses
-      worn = sum(path%model%width*path%state%worn)/path%model%length()**2
-      call gather(path, work, margin, problem)
-      if (size(problem%node) == 0) return
-      associate (wear => path%model%scene%wear)
-         if (wear%block > 0) cycles = min(wear%block, remaining)
+      block%problem%presses = presses
+      worn = path%model%force(path%state%worn)/path%model%length()**2
+      call gather(path, work, margin, block%problem)
+      if (size(block%problem%node) == 0) return
+      associate (tolerance => path%model%scene%wear%tolerance, problem => block%problem)
          do trial = 1, most_trials
             do
-               call solve(problem, real(cycles, wp), pressure)
+               call solve(problem, real(block%cycles, wp), pressure)
                n = size(pressure)
                if (max(pressure(1), pressure(n)) <= 0.0_wp .or. margin >= size(work)) exit
                margin = 2*margin + 1
                call gather(path, work, margin, problem)
             end do
-            change = change_of(problem, cycles, pressure, worn)
-            if (wear%block > 0 .or. cycles == 1 .or. change <= wear%tolerance) exit
-            cycles = max(1, int(max(smallest, safety*wear%tolerance/change)*cycles))
+            block%change = change_of(problem, block%cycles, pressure, worn)
+            if (cycles > 0 .or. block%cycles == 1 .or. block%change <= tolerance) exit
+            block%cycles = max(1, int(max(smallest, safety*tolerance/block%change)*block%cycles))
          end do
+         block%depth(problem%node) = block%cycles*problem%softness*pressure*problem%length
+         if (block%cycles > 1) call solve(problem, 1.0_wp, pressure)
+         block%first(problem%node) = problem%softness*pressure*problem%length
       end associate
-      depth(problem%node) = cycles*problem%softness*pressure*path%model%length()
-      is_coarse = change > path%model%scene%wear%tolerance
    end subroutine find_wear_block
+
+   !> Judge a block by what the two cycles after it wear, `settling` and `next`, depths: length, shape (nodes), on a mesh that may
+   !> have grown since. `correction`: of the depth of both the block and the cycle `settling`, length, shape (nodes). `error`: the
+   !> larger of that of the worn area and of the largest depth, relative to all that is `worn` before the cycle `next`, depth, or to
+   !> round-off; `width`: of the nodes. A block of one cycle has no correction; its error is what that of two cycles would have
+   !> been, from `next` alone.
+   subroutine judge(self, settling, next, worn, width, correction, error)
+      class(wear_block_type), intent(in) :: self
+      real(wp), intent(in) :: settling(:), next(:), worn(:), width(:)
+      real(wp), allocatable, intent(out) :: correction(:)
+      real(wp), intent(out) :: error
+      real(wp), parameter :: round_off = 1.0e-13_wp
+      real(wp), dimension(size(next)) :: first, depth, slope, memory, first_order
+      real(wp), allocatable :: pressure(:)
+      real(wp) :: n
+      integer :: extra
+
+      n = self%cycles
+      extra = (size(next) - size(self%depth))/2
+      first = padded(self%first, extra)
+      depth = padded(self%depth, extra)
+      memory = 0.0_wp
+      allocate (correction(size(next)), source=0.0_wp)
+      error = 0.0_wp
+      if (size(self%problem%node) == 0) return
+      associate (problem => self%problem, node => self%problem%node + extra)
+         if (self%cycles == 1) then
+            slope = next - first
+            n = 2.0_wp
+            call solve(problem, n, pressure)
+            depth(node) = n*problem%softness*pressure*problem%length
+            correction = n*first + 0.5_wp*n*(n - 1.0_wp)*slope - depth
+         else
+            slope = (next - first)/(n + 1.0_wp)
+            call solve(problem, n, pressure)
+            correction = (n + 1.0_wp)*first + 0.5_wp*n*(n + 1.0_wp)*slope - depth - settling
+            memory = 0.5_wp*n*(next - settling - slope)
+         end if
+         first_order = correction
+         call damp(problem, n, pressure > 0.0_wp, node, first_order)
+         correction = first_order
+         call damp(problem, n, pressure > 0.0_wp, node, correction)
+      end associate
+      associate (wrong => abs(first_order) + abs(memory), total => max(worn, round_off*self%problem%length))
+         error = max(sum(width*wrong)/sum(width*max(total, wrong)), maxval(wrong)/maxval(max(total, wrong)))
+      end associate
+      if (self%cycles == 1) correction = 0.0_wp
+   end subroutine judge
+
+   !> Values with `extra` zeros at either end.
+   pure function padded(values, extra)
+      real(wp), intent(in) :: values(:)
+      integer, intent(in) :: extra
+      real(wp) :: padded(size(values) + 2*extra)
+
+      padded = 0.0_wp
+      padded(extra + 1:extra + size(values)) = values
+   end function padded
+
+   !> Add to a depth of wear, length, shape (nodes), what the pressures of `active` nodes of the problem, which it changes, wear
+   !> over `cycles` cycles; `node`: numbers of the nodes of the problem.
+   subroutine damp(problem, cycles, active, node, depth)
+      type(problem_type), intent(in) :: problem
+      real(wp), intent(in) :: cycles
+      logical, intent(in) :: active(:)
+      integer, intent(in) :: node(:)
+      real(wp), intent(inout) :: depth(:)
+      real(wp) :: pressure(size(node)), approach
+
+      pressure = 0.0_wp
+      call solve_active(problem, cycles, active, depth(node)/problem%length, 0.0_wp, pressure, approach)
+      depth(node) = depth(node) + cycles*problem%softness*pressure*problem%length
+   end subroutine damp
 
    !> The work of friction per unit of surface that wears it by `depth`: force/length and length, shape (nodes).
    pure function work_of_wear(model, depth) result(work)
@@ -138,6 +230,7 @@ contains
          end do
          gap = model%gap(path%state%fields)
          associate (length => model%length(), stress => model%compliance%modulus, node => problem%node)
+            problem%length = length
             problem%softness = softness(node)*stress/length
             problem%pressure = pressure(node)/stress
             problem%arm = model%normal_arm(node, motion_approach)
@@ -198,7 +291,8 @@ contains
       pressure = problem%pressure
       active = pressure > 0.0_wp
       do pass = 1, most_passes
-         call solve_active(problem, cycles, active, pressure, approach)
+         call solve_active(problem, cycles, active, problem%opening, sum(problem%width*problem%arm*problem%pressure), pressure, &
+                           approach)
          gap = problem%opening - approach*problem%arm + matmul(problem%compliance, pressure) + cycles*problem%softness*pressure
          wanted = merge(pressure >= 0.0_wp, gap < 0.0_wp, active)
          if (all(wanted .eqv. active)) exit
@@ -207,11 +301,11 @@ contains
       pressure = max(pressure, 0.0_wp)
    end subroutine solve
 
-   !> The pressures of active nodes, zero elsewhere, and the further approach of the upper body; pressures are unchanged if the
-   !> equations are singular.
-   subroutine solve_active(problem, cycles, active, pressure, approach)
+   !> The pressures of active nodes with the given gap without them (`opening`) and normal force, zero elsewhere, and the further
+   !> approach of the upper body; pressures are unchanged if the equations are singular.
+   subroutine solve_active(problem, cycles, active, opening, force, pressure, approach)
       type(problem_type), intent(in) :: problem
-      real(wp), intent(in) :: cycles
+      real(wp), intent(in) :: cycles, opening(:), force
       logical, intent(in) :: active(:)
       real(wp), intent(inout) :: pressure(:)
       real(wp), intent(out) :: approach
@@ -228,10 +322,10 @@ contains
          matrix(i, i) = matrix(i, i) + cycles*problem%softness(at(i))
       end do
       matrix(:m, m + 1) = -problem%arm(at)
-      right(:m) = -problem%opening(at)
+      right(:m) = -opening(at)
       matrix(m + 1, :m) = merge(problem%width(at)*problem%arm(at), 0.0_wp, problem%presses)
       matrix(m + 1, m + 1) = merge(0.0_wp, 1.0_wp, problem%presses)
-      right(m + 1) = merge(sum(problem%width*problem%arm*problem%pressure), 0.0_wp, problem%presses)
+      right(m + 1) = merge(force, 0.0_wp, problem%presses)
       call dgesv(m + 1, 1, matrix, m + 1, pivot, right, m + 1, code)
       if (code /= 0) return
       pressure = 0.0_wp

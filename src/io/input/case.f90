@@ -23,6 +23,8 @@ module mfv_case
       !> See mfv_simulation.
       integer :: keep_history = history_events
       integer :: keep_states = states_reversals
+      !> See simulation_type.
+      real(wp), allocatable :: stress_at
       !> Whether the case is also solved on coarser meshes, for an estimate of the discretisation error.
       logical :: error_estimate = .false.
       !> Whether the case is run once more with perturbed friction, to measure its sensitivity to round-off.

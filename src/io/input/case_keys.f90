@@ -150,11 +150,13 @@ contains
                     'surface', default='archard', choices='archard work')
       call keys%add('wear', 'coefficient', kind_real, 'needed; the gaps grow after every cycle of steps with cycles', &
                     unit='length^2/force', above=0.0_wp)
-      call keys%add('wear', 'tolerance', kind_real, 'one cycle is computed for a block of cycles over which the pressure '// &
-                    'changes by less than this fraction of the normal force, and the wear by less than this fraction of all '// &
-                    'wear so far; the first cycle of a step wears alone', &
+      call keys%add('wear', 'tolerance', kind_real, 'largest error of worn area and depth against a computation of every '// &
+                    'cycle: one cycle in a block of as many as it allows is computed, and two after it, by which the block '// &
+                    'is corrected and, if it errs by more than half of this, taken again, shorter; the first cycle of a step '// &
+                    'wears alone', &
                     default='0.05', lower=1.0e-6_wp, upper=1.0_wp)
-      call keys%add('wear', 'block', kind_integer, 'cycles in a block; if omitted: as many as the tolerance allows', lower=1.0_wp, &
+      call keys%add('wear', 'block', kind_integer, 'largest number of cycles in a block; if omitted: as many as the '// &
+                    'tolerance allows. An error above the tolerance is warned of', lower=1.0_wp, &
                     upper=real(most_cycles, wp))
    end subroutine add_wear_keys
 
@@ -274,6 +276,9 @@ contains
       call keys%add('output', 'states', kind_choice, 'states saved at the end of every step, and at every turning point '// &
                     '(reversals) or those of the last cycle (last_cycle) of its cycles; or only the last one; steps if '// &
                     'omitted in a case with &history', default='reversals', choices='reversals steps none last_cycle')
+      call keys%add('output', 'stress_at', kind_real, 'x at which /history has the stress along the surface of both bodies, '// &
+                    'with the largest tension along it and its x, at the end of every step, row and turning point; if omitted: '// &
+                    'neither', unit='length')
       call keys%add('output', 'error_estimate', kind_logical, 'whether the case is also solved on coarser meshes, to estimate '// &
                     'the discretisation error of half-width, stick ratio, peak tractions, dissipation, largest tension and loops', &
                     default='.false.')

@@ -89,6 +89,7 @@ contains
       case%keep_history = reader%choice('output', 1, 'history')
       case%keep_states = reader%choice('output', 1, 'states')
       if (count_groups(reader, 'history') > 0 .and. .not. reader%has('output', 1, 'states')) case%keep_states = states_steps
+      if (reader%has('output', 1, 'stress_at')) case%stress_at = reader%real_value('output', 1, 'stress_at')
       case%checkpoint_minutes = reader%real_value('output', 1, 'checkpoint_minutes')
       case%error_estimate = reader%logical_value('output', 1, 'error_estimate')
       case%sensitivity = reader%logical_value('output', 1, 'sensitivity')

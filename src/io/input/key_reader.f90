@@ -148,6 +148,9 @@ contains
          end associate
       end do
       why = ''
+      if (right .and. key%names_file()) then
+         if (entry%values(1)%text == '') why = 'must not be empty: name a file, or remove the key'
+      end if
       if (right) return
       if (size(entry%values) > 1 .and. .not. key%is_list .and. all(entry%is_quoted .eqv. is_text)) then
          why = 'one value expected, found '//to_text(size(entry%values))

@@ -24,6 +24,8 @@ module mfv_keys
       !> Whether there may be several values.
       logical :: is_list = .false.
       character(:), allocatable :: unit, meaning
+   contains
+      procedure :: names_file
    end type key_type
 
    !> All keys of a text; groups in the order of the reference, and those that may be repeated, separated by blanks.
@@ -99,6 +101,13 @@ contains
          if (key%upper < huge(1.0_wp)) text = text//' and at most '//to_text(key%upper)
       end select
    end subroutine describe_allowed
+
+   !> Whether the value is the name of a file, which is not empty.
+   pure logical function names_file(self)
+      class(key_type), intent(in) :: self
+
+      names_file = self%kind == kind_text .and. index(self%name, 'file', back=.true.) == len(self%name) - len('file') + 1
+   end function names_file
 
    !> '; did you mean ...?' where a known name is near, else empty.
    pure subroutine suggest(name, names, prefix, text)

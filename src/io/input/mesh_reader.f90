@@ -24,6 +24,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(string_type), allocatable :: keys(:)
       integer, parameter :: most_carried = 1000000
+      character(*), parameter :: fixed(3) = [character(10) :: 'nodes', 'half_angle', 'ends']
       integer :: i
 
       scene%mesh%nodes = reader%integer_value('mesh', 1, 'nodes')
@@ -47,6 +48,11 @@ contains
       end do
       scene%mesh%refined = reader%text_value('mesh', 1, 'refine') == 'edges'
       scene%mesh%nodes_by_accuracy = program_chooses_nodes(reader, scene)
+      if (any([scene%lower%shape, scene%upper%shape] == shape_profile) .and. &
+          .not. any([(reader%has('mesh', 1, trim(fixed(i))), i=1, size(fixed))])) then
+         scene%mesh%nodes = max(scene%mesh%nodes, scene%default_nodes())
+         scene%mesh%nodes_by_patches = size(scene%steps) > 0 .and. .not. (scene%mesh%refined .or. needs_equal_intervals(scene))
+      end if
       if (scene%mesh%refined) call check_refined(reader, scene, error)
       if (.not. allocated(error) .and. reader%has('mesh', 1, 'ends')) call read_ends(reader, scene, error)
       if (.not. allocated(error) .and. reader%has('mesh', 1, 'half_angle')) call read_half_angle(reader, scene, error)

@@ -16,7 +16,7 @@ module mfv_hdf5_restart
    use mfv_node_status, only: node_creep_left, node_open
    use mfv_result_fields, only: along_nothing, field_type, list_type, step_group
    use mfv_scene, only: step_type
-   use mfv_simulation, only: mark_count, simulation_type, snapshot_type
+   use mfv_simulation, only: mark_count, simulation_type, snapshot_type, trial_type, widen_with_zeros
    use mfv_status, only: MFV_INPUT_ERROR
    use mfv_strings, only: to_text
    implicit none
@@ -60,12 +60,14 @@ contains
       copy%restart = simulation%restart
       copy%leg = simulation%leg
       if (allocated(simulation%cycles)) copy%cycles = simulation%cycles
+      if (allocated(simulation%trial)) call copy_trial(simulation, copy)
       copy%contact%model = simulation%contact%model
       copy%contact%history = simulation%contact%history
       associate (r => copy%restart)
          r%path%state = copy%padded(snapshot_type(state=r%path%state, added=r%added))
          r%added = copy%contact%model%added
       end associate
+      call copy%slip_range%widen(copy%contact%model%nodes(), copy%contact%model%added)
       do i = 1, mark_count
          if (copy%marks(i)%step > 0) copy%marks(i)%state = copy%padded(copy%marks(i))
       end do
@@ -80,6 +82,23 @@ contains
       call exchange_restart(to_file, copy, nodes)
       call move_alloc(to_file%list%fields, fields)
    end subroutine restart_fields
+
+   !> Copy the present block of wear, and the position at its start if its wear has begun.
+   subroutine copy_trial(simulation, copy)
+      type(simulation_type), intent(in) :: simulation
+      type(simulation_type), intent(inout) :: copy
+
+      associate (trial => simulation%trial)
+         allocate (copy%trial)
+         copy%trial%cycles = trial%cycles
+         copy%trial%correction = trial%correction
+         call widen_with_zeros(copy%trial%correction, simulation%contact%model%nodes())
+         if (.not. trial%is_worn) return
+         copy%position_type = trial%position
+         copy%leg = trial%leg
+         if (allocated(trial%last_cycle)) copy%cycles = [trial%last_cycle]
+      end associate
+   end subroutine copy_trial
 
    !> Restore a new simulation from the restart data in `file`. Error MFV_INPUT_ERROR if they are missing, damaged or of another
    !> scene; the simulation is then undefined.
@@ -132,16 +151,24 @@ contains
             call self%exchange('load_'//to_text(i), r%load(i)%value, 'load of motion '//to_text(i))
          end do
          if (self%reading .and. .not. allocated(self%error)) call read_snapshots(self, simulation, nodes)
+         if (simulation%contact%model%scene%wear%acts()) call exchange_trial(self, nodes, simulation%trial)
          call exchange_internals(self, simulation)
-         call exchange_state(self, 'state_', nodes, r%path%state)
+         call exchange_state(self, 'state_', nodes, simulation%contact%model%scene%wear%acts(), r%path%state)
+      end associate
+      associate (slip => simulation%slip_range)
+         if (self%reading) call slip%widen(nodes, simulation%restart%added)
+         call self%exchange('lowest_slip', slip%lowest, 'smallest slip of the nodes in contact in the present cycle')
+         call self%exchange('highest_slip', slip%highest, 'largest slip of the nodes in contact in the present cycle')
+      end associate
+      associate (marks => simulation%marks)
+         call self%exchange('mark_steps', marks%step, 'steps of the states mark_1 and so on', 0, most)
+         call self%exchange('mark_reversals', marks%reversal, 'reversals of the states mark_1 and so on', 0, most)
       end associate
       do i = 1, mark_count
-         associate (mark => simulation%marks(i), name => 'mark_'//to_text(i))
-            call self%exchange(name//'_step', mark%step, 'step of the states '//name, 0, most)
-            call self%exchange(name//'_reversal', mark%reversal, 'reversal of the states '//name, 0, most)
+         associate (mark => simulation%marks(i))
             if (mark%step == 0) cycle
             mark%added = simulation%restart%added
-            call exchange_state(self, name//'_', nodes, mark%state)
+            call exchange_state(self, 'mark_'//to_text(i)//'_', nodes, simulation%contact%model%scene%wear%acts(), mark%state)
          end associate
       end do
       if (allocated(self%error) .or. .not. simulation%contact%model%tangential) return
@@ -224,6 +251,13 @@ contains
          call self%exchange('slip_zones', list, internal)
          r%slip = transfer(list, r%slip)
       end associate
+      list = transfer(simulation%extremes, [0])
+      call self%exchange('extremes', list, internal)
+      simulation%extremes = transfer(list, simulation%extremes)
+      do length = 1, size(simulation%yield_estimate, 2)
+         call self%exchange('yield_estimate_'//to_text(length), simulation%yield_estimate(:, length), &
+                            'estimates of the largest von Mises stresses so far')
+      end do
       list = transfer(simulation%leg%cycle, [0])
       length = size(list)
       call self%exchange('cycle_under_way', list, internal)
@@ -259,16 +293,35 @@ contains
       history%record(:records) = transfer(list, history%record, records)
    end subroutine exchange_history
 
-   !> A state with everything that later increments depend on.
-   subroutine exchange_state(self, prefix, nodes, state)
+   !> The block of wear that the segment begins with, if there is one.
+   subroutine exchange_trial(self, nodes, trial)
+      type(exchange_type), intent(inout) :: self
+      integer, intent(in) :: nodes
+      type(trial_type), allocatable, intent(inout) :: trial
+      integer :: begins
+
+      begins = merge(1, 0, allocated(trial))
+      call self%exchange('begins_with_wear', begins, 'whether the segment begins with the wear of a block of cycles', 0, 1)
+      if (begins == 0 .or. allocated(self%error)) return
+      if (self%reading) then
+         allocate (trial)
+         allocate (trial%correction(nodes))
+      end if
+      call self%exchange('block', trial%cycles, 'cycles of that block; 0: as many as the tolerance allows', 0, most)
+      call self%exchange('correction', trial%correction, 'depth of wear that corrects the block before')
+   end subroutine exchange_trial
+
+   !> A state with everything that later increments depend on. `wears`: whether the surfaces do.
+   subroutine exchange_state(self, prefix, nodes, wears, state)
       type(exchange_type), intent(inout) :: self
       character(*), intent(in) :: prefix
       integer, intent(in) :: nodes
+      logical, intent(in) :: wears
       type(contact_state_type), intent(inout) :: state
       integer :: i
 
       if (allocated(self%error)) return
-      if (self%reading) state = new_contact_state(nodes)
+      if (self%reading) state = new_contact_state(nodes, wears)
       self%prefix = prefix
       call exchange_visible(self, state)
       call exchange_motions(self, state, motions(:motion_count)%optional)
@@ -277,7 +330,8 @@ contains
       call self%exchange('cycle_work', state%cycle_work, 'magnitudes of the friction work of this cycle')
       call self%exchange('pressure_work', state%pressure_work, 'the same times the pressure')
       call self%exchange('worn', state%worn, 'depth worn off both surfaces')
-      call self%exchange('coarsely_worn', state%coarsely_worn, 'area worn off in blocks of cycles that are too large')
+      call self%exchange('coarsely_worn', state%coarsely_worn, 'area worn off in single cycles that wear too much')
+      call self%exchange('wear_error', state%wear_error, 'estimated error of the area worn off in given blocks of cycles')
       call self%exchange('normal', state%fields%normal, 'separation of the surfaces by deformation and rotation')
       call self%exchange('tangential', state%fields%tangential, 'displacement of the lower surface to the right relative to '// &
                          'the upper one')
@@ -330,7 +384,7 @@ contains
       do i = 1, simulation%snapshot_count
          associate (snapshot => simulation%snapshots(i), model => simulation%contact%model)
             self%group = step_group(i)
-            snapshot%state = new_contact_state(nodes)
+            snapshot%state = new_contact_state(nodes, model%scene%wear%acts())
             call exchange_visible(self, snapshot%state)
             call exchange_motions(self, snapshot%state, motions(:motion_count)%optional .and. model%moves(:motion_count))
             if (model%tangential) call self%exchange('friction_work', snapshot%state%friction_work, '')

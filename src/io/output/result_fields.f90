@@ -12,7 +12,9 @@ module mfv_result_fields
    use mfv_cycle, only: cycle_type
    use mfv_discretisation_error, only: quantity_names
    use mfv_error_bar
+   use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
+   use mfv_load_extremes, only: candidate_tension, extreme_type
    use mfv_material, only: plane_names
    use mfv_motions, only: motions, motion_count => user_motions, motion_approach, motion_shift, motion_rotation, bulk_motions
    use mfv_node_status, only: event_names, holds, in_contact, node_status_names
@@ -618,8 +620,9 @@ contains
             call list%add(trim(motions(i)%key)//'_drift', c%drift(i), along, trim(motions(i)%unit), 'change of the '// &
                           trim(motions(i)%key)//' over the cycle: not 0 where the upper body walks although tractions repeat')
       end do
-      call list%add('stick_ratio_lowest', c%lowest_stick_ratio, along, '1', 'lowest stick ratio at a turning point')
-      call list%add('stick_ratio_highest', c%highest_stick_ratio, along, '1', 'highest stick ratio at a turning point')
+      call add_cycle_extremes(list, c)
+      call list%add('stick_ratio_lowest', c%extremes%lowest_stick%value, along, '1', 'lowest stick ratio at a turning point')
+      call list%add('stick_ratio_highest', c%extremes%highest_stick%value, along, '1', 'highest stick ratio at a turning point')
       call list%add('stick_ratio_reversal', c%reversal%edges%stick_ratio(), along, '1', 'stick ratio at the turning point '// &
                     'whose forces differ most from those at the start')
       call list%add('stick_ratio_return', c%return%edges%stick_ratio(), along, '1', 'stick ratio at the end of the cycle')
@@ -633,6 +636,51 @@ contains
       call list%add('friction_work', after%friction_work - before%friction_work, along_nodes, 'force/length', 'energy '// &
                     'dissipated in the last cycle per unit of surface')
    end subroutine add_cycles
+
+   !> Extremes over the cycles: names, units and meanings are those of the observables.
+   subroutine add_cycle_extremes(list, c)
+      type(list_type), intent(inout) :: list
+      type(cycle_type), intent(in) :: c(:)
+
+      call add('largest_pressure', c%extremes%pressure)
+      call add('largest_shear', c%extremes%shear)
+      call add('largest_slip_range', c%extremes%slip_range)
+      call add('largest_lower_tension', c%extremes%searched(candidate_tension(1)))
+      call add('largest_upper_tension', c%extremes%searched(candidate_tension(2)))
+
+   contains
+
+      !> Add an extreme with its place and row, if a cycle has it.
+      subroutine add(name, extreme)
+         character(*), intent(in) :: name
+         type(extreme_type), intent(in) :: extreme(:)
+         character(*), parameter :: suffix(3) = [character(4) :: '', '_x', '_row']
+         real(wp) :: values(size(extreme), size(suffix))
+         integer :: i, place
+
+         if (all(extreme%row == 0)) return
+         values(:, 1) = extreme%value
+         values(:, 2) = extreme%x
+         values(:, 3) = extreme%row
+         do i = 1, size(suffix)
+            where (extreme%row == 0) values(:, i) = ieee_value(1.0_wp, ieee_quiet_nan)
+            place = observable_place(name//trim(suffix(i)))
+            if (place > observable_count) cycle
+            associate (row => observables(place))
+               call list%add(trim(row%name), values(:, i), along_cycles, trim(row%unit), of_each_cycle(row%meaning))
+            end associate
+         end do
+      end subroutine add
+
+      !> The meaning of an observable of the last cycle, for every cycle.
+      pure function of_each_cycle(meaning) result(text)
+         character(*), intent(in) :: meaning
+         character(len=len_trim(meaning)) :: text
+
+         text = meaning
+         if (index(meaning, ' over the last cycle') > 0) text = meaning(:index(meaning, ' over the last cycle'))//'over the cycle'
+      end function of_each_cycle
+   end subroutine add_cycle_extremes
 
    subroutine add_summary(list, simulation, state)
       type(list_type), intent(inout) :: list
@@ -742,7 +790,7 @@ contains
       if (.not. bar%known) return
       call list%add(name, bar%value, unit, meaning)
       call list%add(name//'_error', bar%error, unit, 'estimated discretisation error: '//meaning//'; infinite if '// &
-                    'there is no limit, NaN if slip zones have too few nodes to resolve it')
+                    'there is no limit, NaN if it is not resolved, as a warning says')
       call list%add(name//'_order', bar%order, '1', 'observed order of convergence, from 1 to 2 (negative: no limit; NaN: not '// &
                     'resolved): '//meaning)
       call list%add(name//'_companions', bar%coarser_values, along_companions, unit, 'on the coarser meshes: '//meaning)  ! wording: ok
@@ -772,9 +820,12 @@ contains
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
       integer, parameter :: along = along_records
+      character(*), parameter :: bodies(2) = ['lower', 'upper']
       real(wp), dimension(simulation%contact%history%records, motion_count) :: force, motion
+      logical :: has_stresses(2)
       integer :: i
 
+      has_stresses = [has_interior(simulation%contact%model%scene%lower), has_interior(simulation%contact%model%scene%upper)]
       associate (r => simulation%contact%history%record(:simulation%contact%history%records))
          call list%add('record', [(i, i=0, size(r) - 1)], along, 'number of the record')
          do i = 1, motion_count
@@ -795,6 +846,16 @@ contains
          call list%add('event_count', r%event_count, along, 'number of nodes of the event')
          call list%add('step', r%step, along, 'number of the step, 0 before the first')
          call list%add('linear_solves', r%linear_solves, along, linear_solves_meaning)
+         if (allocated(simulation%stress_at)) then
+            do i = 1, size(bodies)
+               if (.not. has_stresses(i)) cycle
+               call list%add(bodies(i)//'_tension', r%tension(i), along, 'force/length^2', 'largest tension along the surface '// &
+                             'of the '//bodies(i)//' body; NaN at events')
+               call list%add(bodies(i)//'_tension_x', r%tension_x(i), along, 'length', 'where it is: x')
+               call list%add(bodies(i)//'_surface_stress', r%surface_stress(i), along, 'force/length^2', 'stress along the '// &
+                             'surface of the '//bodies(i)//' body at x = stress_at; NaN at events')
+            end do
+         end if
       end associate
    end subroutine add_history
 

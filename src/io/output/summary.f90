@@ -7,6 +7,7 @@ module mfv_summary
    use mfv_error_bar
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
+   use mfv_load_extremes, only: over_rows, over_steps
    use mfv_motions, only: motions, motion_count => user_motions, motion_rotation, bulk_motions
    use mfv_result_fields, only: field_named, field_type, group_fields
    use mfv_simulation, only: simulation_type
@@ -36,6 +37,8 @@ contains
       text = ''
       associate (model => simulation%contact%model)
          call add_line(text, 'outcome', status_outcome(simulation%outcome)//': '//simulation%message)
+         call group_fields(case, simulation, 'observables', seen, observed)
+         call add_extremes(text, seen, simulation)
          call add_contact(text, fields)
          call add_line(text, 'nodes', to_text(model%nodes())//', in contact '//amount(fields, 'contact_nodes')// &
                        ', stuck '//amount(fields, 'stick_nodes')//', slipping '//amount(fields, 'slip_nodes'))
@@ -47,7 +50,6 @@ contains
             call add_line(text, 'tangential force', amount(fields, 'tangential_force')//', shift '//amount(fields, 'shift'))
             call add_line(text, 'dissipation', amount(fields, 'dissipation'))
          end if
-         call group_fields(case, simulation, 'observables', seen, observed)
          if (simulation%cycle_count > 0) call add_last_cycle(text, seen, simulation%cycles(simulation%cycle_count)%walks())
          do i = 1, motion_count
             if (.not. (motions(i)%optional .and. model%moves(i))) cycle
@@ -141,8 +143,69 @@ contains
             words = words//', '//bodies(i)//' body singular at a sharp corner'
          end if
       end do
-      if (words /= '') call add_line(text, 'largest tension', words(3:))
+      if (words /= '') call add_line(text, 'tension at the end', words(3:))
    end subroutine add_tension
+
+   !> Extremes over the last cycle, the rows of &history or the steps; of steps only if they exceed the values at the
+   !> end.
+   subroutine add_extremes(text, fields, simulation)
+      character(:), allocatable, intent(inout) :: text
+      type(field_type), intent(in) :: fields(:)
+      type(simulation_type), intent(in) :: simulation
+      character(*), parameter :: names(4) = [character(13) :: 'lower_tension', 'upper_tension', 'pressure', 'shear']
+      character(:), allocatable :: over
+      integer :: i
+
+      if (simulation%stretch() == over_steps) then
+         if (.not. any([(is_above_end(trim(names(i))), i=1, size(names))])) return
+      end if
+      over = 'over all steps: '
+      if (simulation%stretch() == over_rows) over = 'over all rows: '
+      if (simulation%ends_with_cycle()) over = 'over the last cycle: '
+      call add('largest tension', 'lower body', 'largest_lower_tension', 'upper body', 'largest_upper_tension')
+      call add('largest tractions', 'pressure', 'largest_pressure', 'shear', 'largest_shear')
+      call add('largest von Mises', 'lower body', 'largest_lower_von_mises', 'upper body', 'largest_upper_von_mises')
+      call add('largest slip range', 'of a node', 'largest_slip_range', '', '')
+      call add('stick ratio', 'smallest', 'smallest_stick_ratio', 'largest', 'largest_stick_ratio')
+
+   contains
+
+      !> Whether the largest value exceeds the one at the end by more than a rounding error.
+      pure logical function is_above_end(name)
+         character(*), intent(in) :: name
+         real(wp), parameter :: round_off = 1.0e-6_wp
+         integer :: largest, last
+
+         largest = field_named(fields, 'largest_'//name)
+         last = max(field_named(fields, name), field_named(fields, 'peak_'//name))
+         is_above_end = largest > 0 .and. last > 0
+         if (is_above_end) is_above_end = fields(largest)%values(1) > (1.0_wp + round_off)*fields(last)%values(1)
+      end function is_above_end
+
+      !> A line with one or two extremes, where they exist.
+      subroutine add(label, first, name_of_first, second, name_of_second)
+         character(*), intent(in) :: label, first, name_of_first, second, name_of_second
+         character(:), allocatable :: words
+
+         words = ''
+         call add_extreme(words, first, name_of_first)
+         call add_extreme(words, second, name_of_second)
+         if (words /= '') call add_line(text, label, over//words(3:))
+      end subroutine add
+
+      !> Add an extreme, if it exists, with its place, and where in the load history it occurs.
+      subroutine add_extreme(words, label, name)
+         character(:), allocatable, intent(inout) :: words
+         character(*), intent(in) :: label, name
+         character(*), parameter :: places(3) = [character(16) :: ' (step', ' (turning point', ' (row']
+
+         if (field_named(fields, name) == 0) return
+         words = words//', '//label//' '//amount(fields, name)
+         if (field_named(fields, name//'_x') > 0) words = words//' at x = '//amount(fields, name//'_x')
+         if (field_named(fields, name//'_row') > 0) &
+            words = words//trim(places(simulation%stretch()))//' '//amount(fields, name//'_row')//')'
+      end subroutine add_extreme
+   end subroutine add_extremes
 
    !> Memory of the kernels or matrices, and time of assembly.
    subroutine add_compliance(text, model)

@@ -1,0 +1,305 @@
+!> Which quantities of a simulation its mesh does not resolve, and why: few nodes in contact patches, profiles with more points
+!> than the mesh has nodes, rounded edges, slip zones. Warnings and error bars take it from here.
+module mfv_resolution
+   use mfv_body, only: body_type, shape_matrix, shape_profile, shape_rounded_punch
+   use mfv_contact_model, only: needs_equal_intervals
+   use mfv_interior, only: has_interior
+   use mfv_kinds, only: wp
+   use mfv_motions, only: motion_approach
+   use mfv_node_status, only: in_contact
+   use mfv_profile_sampling, only: find_missed, negligible_pressure, pressure_of_wave
+   use mfv_simulation, only: simulation_type
+   use mfv_slip_zones, only: contact_interval, hidden_width_at_edge, needed_mesh, nodes_at_edge, resolved_nodes, slip_record_type
+   use mfv_strings, only: add_text, has_word, string_type, to_text
+   use mfv_zone_edges, only: find_zone_edges, zone_edges_type, zone_type, zones_of
+   implicit none
+   private
+   public :: find_unresolved, unresolved_type, add_unresolved, is_unresolved, all_quantities, undersampling, poorest_patch, &
+             fewest_patch_nodes
+
+   !> What a mesh does not resolve.
+   type :: unresolved_type
+      !> Names of observables, separated by blanks, and a sentence for the user that names them.
+      character(:), allocatable :: quantities, text
+   end type unresolved_type
+
+   !> Fewest nodes of a contact patch for half-width, stick ratio and tractions.
+   integer, parameter :: fewest_patch_nodes = 10
+
+contains
+
+   !> What the mesh of a simulation does not resolve in its present state and last cycle, one entry for each cause.
+   subroutine find_unresolved(simulation, unresolved)
+      type(simulation_type), intent(in) :: simulation
+      type(unresolved_type), allocatable, intent(out) :: unresolved(:)
+
+      allocate (unresolved(0))
+      if (simulation%contact%state%contact_nodes() > 0) then
+         call check_patches(simulation, unresolved)
+         call check_profile(simulation, .false., unresolved)
+         call check_profile(simulation, .true., unresolved)
+         call check_rounded_edges(simulation, .false., unresolved)
+         call check_rounded_edges(simulation, .true., unresolved)
+      end if
+      call check_slip_zones(simulation, unresolved)
+   end subroutine find_unresolved
+
+   !> Add a cause: `quantities` (names of observables, separated by blanks), why they are not resolved, and what to do.
+   subroutine add_unresolved(unresolved, quantities, why, remedy)
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
+      character(*), intent(in) :: quantities, why, remedy
+      character(:), allocatable :: list
+      integer :: i
+
+      list = ''
+      do i = 1, len_trim(quantities)
+         if (quantities(i:i) == ' ') list = list//','
+         list = list//quantities(i:i)
+      end do
+      unresolved = [unresolved, unresolved_type(trim(quantities), why//'; not resolved: '//list//'; '//remedy)]
+   end subroutine add_unresolved
+
+   !> Whether a quantity, by the name of its observable, is among those that are not resolved.
+   pure logical function is_unresolved(unresolved, name)
+      type(unresolved_type), intent(in) :: unresolved(:)
+      character(*), intent(in) :: name
+      integer :: i
+
+      is_unresolved = any([(has_word(unresolved(i)%quantities, name), i=1, size(unresolved))])
+   end function is_unresolved
+
+   !> The quantities that depend on all contact patches, separated by blanks and padded with them.
+   function all_quantities(simulation) result(names)
+      type(simulation_type), intent(in) :: simulation
+      character(len=200) :: names
+
+      names = 'contact_half_width contact_length peak_pressure'
+      if (simulation%contact%model%tangential) names = trim(names)//' stick_ratio peak_shear dissipation'// &
+                                                        tensions(simulation)
+      if (simulation%cycle_count > 0) names = trim(names)//' cycle_dissipation tangential_stiffness secant_stiffness loss_factor'
+   end function all_quantities
+
+   !> Names of the tensions of the bodies that have any, after blanks and padded with them.
+   function tensions(simulation) result(names)
+      type(simulation_type), intent(in) :: simulation
+      character(len=28) :: names
+
+      names = ''
+      if (has_interior(simulation%contact%model%scene%lower)) names = ' lower_tension'
+      if (has_interior(simulation%contact%model%scene%upper)) names = trim(names)//' upper_tension'
+   end function tensions
+
+   !> The contact patch with the fewest nodes among those that matter: that carry a part of the normal force, or the peak pressure.
+   function poorest_patch(simulation) result(poorest)
+      type(simulation_type), intent(in) :: simulation
+      type(zone_type) :: poorest
+      real(wp), parameter :: least_part = 0.01_wp
+      type(zone_type), allocatable :: patches(:)
+      integer :: i, peak
+
+      associate (model => simulation%contact%model, state => simulation%contact%state)
+         patches = zones_of(in_contact(state%status))
+         peak = maxloc(state%fields%pressure, dim=1)
+         poorest = zone_type(1, size(state%status))
+         do i = 1, size(patches)
+            associate (first => patches(i)%first, last => patches(i)%last)
+               if (last - first >= poorest%last - poorest%first) cycle
+               if (sum(state%fields%pressure(first:last)*model%width(first:last)) < least_part*state%fields%force(motion_approach) &
+                   .and. (peak < first .or. peak > last)) cycle
+               poorest = patches(i)
+            end associate
+         end do
+      end associate
+   end function poorest_patch
+
+   !> Contact patches with few nodes.
+   subroutine check_patches(simulation, unresolved)
+      type(simulation_type), intent(in) :: simulation
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
+      character(:), allocatable :: why
+      type(zone_type) :: patch
+      integer :: nodes, patches
+
+      patch = poorest_patch(simulation)
+      nodes = patch%last - patch%first + 1
+      if (nodes >= fewest_patch_nodes) return
+      associate (model => simulation%contact%model, status => simulation%contact%state%status)
+         patches = size(zones_of(in_contact(status)))
+         why = 'only '//to_text(nodes)//trim(merge(' node is  ', ' nodes are', nodes == 1))//' in contact'
+         if (patches > 1) why = why//' in the patch near x = '//to_text(model%x((patch%first + patch%last)/2), 4)//', one of '// &
+                                to_text(patches)//' patches with '//to_text(count(in_contact(status)))//' nodes'
+         call add_unresolved(unresolved, all_quantities(simulation), why, 'use '// &
+                             trim(needed_mesh(model, simulation%contact%state, sum(model%width(patch%first:patch%last)), &
+                                              fewest_patch_nodes))//' for '// &
+                             to_text(fewest_patch_nodes)//' nodes in each patch')
+      end associate
+   end subroutine check_patches
+
+   !> A profile with more points than the mesh has nodes, which changes the pressures between them.
+   subroutine check_profile(simulation, upper, unresolved)
+      type(simulation_type), intent(in) :: simulation
+      logical, intent(in) :: upper
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
+      real(wp) :: part
+      integer :: nodes, points
+
+      call undersampling(simulation, upper, part, points)
+      if (.not. part > negligible_pressure) return
+      nodes = simulation%contact%model%scene%nodes_for_profile()
+      call add_unresolved(unresolved, all_quantities(simulation), 'the mesh is coarser than the profile of the '// &
+                          merge('upper', 'lower', upper)//' body, which has up to '//to_text(points + 1)// &
+                          ' points per interval: what is between the nodes changes the pressure by about '// &
+                          to_text(100.0_wp*part, 2)//' % of its peak', 'use at least '// &
+                          to_text(max(nodes, (points + 1)*simulation%contact%model%scene%mesh%nodes))//' nodes')
+   end subroutine check_profile
+
+   !> The pressure over the peak that is due to points of the profile of a body between the nodes, at which it protrudes from, or
+   !> recedes behind, a smooth curve through the nodes in contact, or penetrates the other body where nodes are open (the
+   !> deformation is interpolated). `points`: most points between two nodes.
+   subroutine undersampling(simulation, upper, part, points)
+      type(simulation_type), intent(in) :: simulation
+      logical, intent(in) :: upper
+      real(wp), intent(out) :: part
+      integer, intent(out) :: points
+      integer, allocatable :: left(:)
+      real(wp), allocatable :: fraction(:), height(:), gap(:)
+      logical, allocatable :: touching(:)
+      real(wp) :: peak
+      integer :: i
+
+      part = 0.0_wp
+      points = 0
+      associate (model => simulation%contact%model, state => simulation%contact%state)
+         peak = maxval(state%fields%pressure)
+         if (merge(model%scene%upper%shape, model%scene%lower%shape, upper) /= shape_profile .or. .not. peak > 0.0_wp) return
+         if (upper) then
+            call find_missed(model%scene%upper, model%x, left, fraction, height)
+         else
+            call find_missed(model%scene%lower, model%x, left, fraction, height)
+         end if
+         if (size(left) == 0) return
+         touching = in_contact(state%status)
+         gap = max(model%gap(state%fields), 0.0_wp)
+         gap = gap(left) + fraction*(gap(left + 1) - gap(left))
+         where (touching(left) .and. touching(left + 1))
+            height = abs(height)
+         elsewhere
+            height = max(-height - gap, 0.0_wp)
+         end where
+         part = maxval(pressure_of_wave(model%scene%modulus(), height, model%width(left)))/peak
+         points = maxval([(count(left == left(i)), i=1, size(left))], mask=height > 0.0_wp)
+      end associate
+   end subroutine undersampling
+
+   !> From the flat of a punch to the contact edge the pressure rises to its peak and vanishes.
+   subroutine check_rounded_edges(simulation, upper, unresolved)
+      type(simulation_type), intent(in) :: simulation
+      logical, intent(in) :: upper
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
+      type(zone_edges_type) :: edges
+      type(body_type) :: body
+      real(wp) :: width, interval
+
+      associate (model => simulation%contact%model, state => simulation%contact%state)
+         body = model%scene%lower
+         if (upper) body = model%scene%upper
+         if (body%shape /= shape_rounded_punch) return
+         call find_zone_edges(model, state, edges)
+         width = 0.5_wp*(edges%contact_right - edges%contact_left) - body%flat_half_width
+         interval = minval(model%width, mask=in_contact(state%status))
+         if (.not. edges%contact .or. .not. width > 0.0_wp .or. width >= resolved_nodes*interval) return
+         call add_unresolved(unresolved, all_quantities(simulation), 'the rounded edges of the '// &
+                             merge('upper', 'lower', upper)//' body are in contact over a width of '//to_text(width, 3)//', '// &
+                             to_text(width/interval, 2)//' intervals', 'use '// &
+                             trim(needed_mesh(model, state, width, resolved_nodes)))
+      end associate
+   end subroutine check_rounded_edges
+
+   !> Slip zones with too few nodes.
+   subroutine check_slip_zones(simulation, unresolved)
+      type(simulation_type), intent(in) :: simulation
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
+      character(:), allocatable :: names, text, remedy
+      integer :: nodes
+      real(wp) :: width, interval
+
+      names = ''
+      nodes = resolved_nodes
+      width = huge(width)
+      interval = contact_interval(simulation%contact%model, simulation%contact%state)
+      call add_work(simulation%slip, 'dissipation')
+      ! The tension behind a contact grows with the root of its slip zone.
+      call add_zones(simulation%slip, 'stick_ratio peak_shear'//tensions(simulation))
+      if (.not. simulation%slip%is_coarse_now(interval)) then
+         call add_edge(-1)
+         call add_edge(1)
+      end if
+      if (simulation%cycle_count > 0) then
+         associate (cycle => simulation%cycles(simulation%cycle_count))
+            call add_work(cycle%slip(), 'cycle_dissipation loss_factor nonlinear_shift')
+            call add_work(cycle%first_slip, 'first_cycle_dissipation')
+            call add_zones(cycle%loading_slip, 'stick_ratio_loading')
+            call add_zones(cycle%reversal%slip, 'stick_ratio_reversal')
+            call add_zones(cycle%return%slip, 'stick_ratio_return')
+         end associate
+      end if
+      if (names == '') return
+      text = 'slip zones have only '//to_text(nodes)//trim(merge(' node ', ' nodes', nodes == 1))
+      if (nodes == 0) text = 'a slip zone has no node: it is narrower than the mesh resolves'
+      remedy = trim(needed_mesh(simulation%contact%model, simulation%contact%state, width, resolved_nodes))
+      associate (scene => simulation%contact%model%scene)
+         if (.not. (allocated(scene%mesh%ends) .or. scene%lower%shape == shape_matrix .or. needs_equal_intervals(scene))) &
+            remedy = "refine='edges' in &mesh, or "//remedy
+      end associate
+      call add_unresolved(unresolved, names(2:), text//' ('//to_text(width/interval, 2)//' intervals)', 'use '//remedy//' for '// &
+                          to_text(resolved_nodes)//' nodes in each slip zone')
+
+   contains
+
+      subroutine add_work(slip, quantities)
+         type(slip_record_type), intent(in) :: slip
+         character(*), intent(in) :: quantities
+
+         if (slip%is_coarse()) call add(quantities, slip%mean_nodes(), slip%mean_width())
+      end subroutine add_work
+
+      subroutine add_zones(slip, quantities)
+         type(slip_record_type), intent(in) :: slip
+         character(*), intent(in) :: quantities
+
+         if (slip%is_coarse_now(interval)) call add(quantities, slip%nodes_now, slip%width_now)
+      end subroutine add_zones
+
+      !> A slip zone at an edge with too few nodes, or none, although the widest one is resolved. A traction that points from the
+      !> edge into the contact causes tension outside.
+      subroutine add_edge(side)
+         integer, intent(in) :: side
+         real(wp) :: hidden
+         integer :: zone, edge
+
+         associate (model => simulation%contact%model, state => simulation%contact%state)
+            zone = nodes_at_edge(model, state, side)
+            hidden = 0.0_wp
+            if (simulation%slip%nodes_now > 0) hidden = hidden_width_at_edge(model, state, side)
+            edge = findloc(in_contact(state%status), .true., dim=1, back=side > 0)
+            if (zone > 0 .and. zone < resolved_nodes) then
+              if (merge(has_interior(model%scene%lower), has_interior(model%scene%upper), side*state%fields%shear(edge) < 0.0_wp)) &
+                  call add(adjustl(tensions(simulation)), zone, zone*model%width(edge))
+            else if (hidden > 0.0_wp) then
+               call add('stick_ratio'//tensions(simulation), 0, hidden)
+            end if
+         end associate
+      end subroutine add_edge
+
+      subroutine add(quantities, its_nodes, its_width)
+         character(*), intent(in) :: quantities
+         integer, intent(in) :: its_nodes
+         real(wp), intent(in) :: its_width
+
+         names = names//' '//trim(quantities)
+         nodes = min(nodes, its_nodes)
+         width = min(width, its_width)
+      end subroutine add
+   end subroutine check_slip_zones
+
+end module mfv_resolution

@@ -1,0 +1,366 @@
+!> Extremes over a stretch of the load history, such as its last cycle, from the states at the ends of its load segments: the value,
+!> where it is, and in which row.
+!>
+!> Largest stresses need a search in each state (mfv_stress_search), which costs more than a load segment. Estimates of them (1 %
+!> too small as a median, and less sensitive to slip zones of one or two nodes) find the state that is worth it. The surface stress
+!> is -p + 2/pi integral of tau/(t - x) dt (Johnson 1985, eq. 2.23). At an edge of the contact tau vanishes as a root: in each
+!> interval it is taken as proportional to root((t - l)(r - t)), between the edges l and r, whose integrals are elementary.
+module mfv_load_extremes
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
+   use mfv_body, only: body_type
+   use mfv_contact_model, only: contact_model_type
+   use mfv_contact_state, only: contact_state_type
+   use mfv_interior, only: has_interior, von_mises_stress
+   use mfv_kinds, only: pi, wp
+   use mfv_material, only: plane_strain
+   use mfv_motions, only: bulk_motions, motion_approach
+   use mfv_node_status, only: in_contact
+   use mfv_zone_edges, only: find_patches, largest_shear, outermost_edges, patch_type, zone_edges_type
+   implicit none
+   private
+   public :: extreme_type, load_extremes_type, slip_range_type, candidate_count, candidate_tension, candidate_von_mises, &
+             most_rows, add_estimate, &
+             over_steps, over_cycle, over_rows
+
+   !> Stretches: steps without cycles, a cycle, rows of &history.
+   integer, parameter :: over_steps = 1, over_cycle = 2, over_rows = 3
+
+   !> Stresses that need a search, of the lower and the upper body.
+   integer, parameter :: candidate_tension(2) = [1, 2], candidate_von_mises(2) = [3, 4], candidate_count = 4
+   !> Most rows of each, those with the largest estimates, in which they are searched for; and in all.
+   integer, parameter :: rows_of(candidate_count) = [5, 5, 3, 3], most_rows = 5
+   !> Estimates that differ by less, relative to their values, are of the same state.
+   real(wp), parameter :: same = 1.0e-6_wp
+   !> Extremes that differ by less, relative to their values, are equal: the first row counts.
+   real(wp), parameter :: round_off = 1.0e-9_wp
+
+   !> A value, its place (x and y, lengths) and its row, see load_extremes_type; 0: none yet.
+   type :: extreme_type
+      real(wp) :: value = 0.0_wp, x = 0.0_wp, y = 0.0_wp
+      integer :: row = 0
+   contains
+      procedure :: raise
+   end type extreme_type
+
+   !> Extremes since the start of a stretch. A row is the number of the step, of the turning point in the cycle, or of the row of
+   !> &history.
+   type :: load_extremes_type
+      !> See over_steps; and the step in which the stretch began.
+      integer :: stretch = over_steps, step = 0
+      type(extreme_type) :: pressure, shear, lowest_stick, highest_stick, slip_range
+      !> Largest tension along the surface of each body, and von Mises stress in it, where searched for.
+      type(extreme_type) :: searched(candidate_count)
+      !> Rows that may have these, 0 for none, and the estimates in them, force/length^2.
+      integer :: row(most_rows, candidate_count) = 0
+      real(wp) :: estimate(most_rows, candidate_count) = -1.0_wp
+   contains
+      procedure :: add_state
+      procedure :: is_repeated
+   end type load_extremes_type
+
+   !> Smallest and largest slip of every node while in contact, lengths, shape (nodes); `added`: see contact_model_type.
+   type :: slip_range_type
+      real(wp), allocatable :: lowest(:), highest(:)
+      integer :: added = 0
+   contains
+      procedure :: widen
+      procedure :: add => add_slip
+   end type slip_range_type
+
+   !> Tractions at some places of the surface: arc lengths; 1/pi integral of tau/(t - x) dt, p and tau, force/length^2; (places).
+   type :: samples_type
+      real(wp), allocatable :: arc(:), integral(:), pressure(:), shear(:)
+   end type samples_type
+
+contains
+
+   !> Take a larger value, or NaN for an unbounded one. `row`, `x`, `y`: where it is. Of equal ones the first row counts.
+   pure subroutine raise(self, value, row, x, y)
+      class(extreme_type), intent(inout) :: self
+      real(wp), intent(in) :: value
+      integer, intent(in) :: row
+      real(wp), intent(in), optional :: x, y
+
+      if (self%row > 0) then
+         if (value <= self%value - round_off*abs(self%value) .or. ieee_is_nan(self%value)) return
+         if (value <= self%value + round_off*abs(self%value) .and. row > self%row) return
+      end if
+      self%value = value
+      self%row = row
+      if (present(x)) self%x = x
+      if (present(y)) self%y = y
+   end subroutine raise
+
+   !> Add the state at the end of a load segment. `slip`: of the stretch so far. `friction`: whether friction acts in the segment.
+   !> `place`: where it is among the rows of each stress, 0 if it is not; shape (candidate_count).
+   subroutine add_state(self, model, state, slip, row, friction, place)
+      class(load_extremes_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      type(slip_range_type), intent(inout) :: slip
+      integer, intent(in) :: row
+      logical, intent(in) :: friction
+      integer, intent(out) :: place(:)
+      type(patch_type), allocatable :: patches(:)
+      type(zone_edges_type) :: edges
+      real(wp) :: shear, estimates(candidate_count), arc
+      integer :: i
+
+      call find_patches(model, state, patches)
+      edges = outermost_edges(patches)
+   if (edges%contact) call self%pressure%raise(maxval(state%fields%pressure), row, place_of_largest(model%x, state%fields%pressure))
+      if (model%tangential) then
+         do i = 1, size(patches)
+            shear = largest_shear(model, state, patches(i), arc)
+            call self%shear%raise(shear, row, model%scene%x_of_arc(arc))
+         end do
+         call slip%add(model, state)
+         associate (ranges => slip%highest - slip%lowest)
+            if (any(ranges >= 0.0_wp)) call self%slip_range%raise(maxval(ranges), row, place_of_largest(model%x, ranges))
+         end associate
+      end if
+      if (model%tangential .and. friction .and. edges%contact) then
+         call self%highest_stick%raise(edges%stick_ratio(), row)
+         call lower(self%lowest_stick, edges%stick_ratio(), row)
+      end if
+      call estimate_stresses(model, state, patches, estimates)
+      do i = 1, candidate_count
+         call add_estimate(self%estimate(:rows_of(i), i), estimates(i), place(i))
+         if (place(i) > 0) self%row(place(i), i) = row
+      end do
+   end subroutine add_state
+
+   !> Put an estimate among the largest ones, in place of the smallest; negative: none. `place`: where, 0 if it is not among them or
+   !> equal to one.
+   pure subroutine add_estimate(largest, estimate, place)
+      real(wp), intent(inout) :: largest(:)
+      real(wp), intent(in) :: estimate
+      integer, intent(out) :: place
+
+      place = 0
+      if (.not. estimate >= 0.0_wp .or. any(largest >= 0.0_wp .and. abs(largest - estimate) <= same*estimate)) return
+      if (.not. estimate > minval(largest)) return
+      place = minloc(largest, dim=1)
+      largest(place) = estimate
+   end subroutine add_estimate
+
+   !> x of the largest value at the nodes: the middle of neighbouring nodes with the same value.
+   pure real(wp) function place_of_largest(x, values) result(place)
+      real(wp), intent(in) :: x(:), values(:)
+      integer :: first, last
+
+      first = findloc(values >= (1.0_wp - round_off)*maxval(values), .true., dim=1)
+      last = first
+      do while (last < size(x))
+         if (.not. values(last + 1) >= (1.0_wp - round_off)*maxval(values)) exit
+         last = last + 1
+      end do
+      place = 0.5_wp*(x(first) + x(last))
+   end function place_of_largest
+
+   !> Whether a stretch repeats the `other` one as far as the search for a stress is concerned.
+   pure logical function is_repeated(self, other, candidate)
+      class(load_extremes_type), intent(in) :: self
+      type(load_extremes_type), intent(in) :: other
+      integer, intent(in) :: candidate
+
+      associate (here => self%estimate(:, candidate), there => other%estimate(:, candidate))
+         is_repeated = self%step == other%step .and. all(self%row(:, candidate) == other%row(:, candidate) .and. &
+                                                         abs(here - there) <= round_off*abs(there))
+      end associate
+   end function is_repeated
+
+   !> Take a smaller value.
+   pure subroutine lower(self, value, row)
+      type(extreme_type), intent(inout) :: self
+      real(wp), intent(in) :: value
+      integer, intent(in) :: row
+
+      if (self%row > 0 .and. .not. value < self%value - round_off*abs(self%value)) return
+      self%value = value
+      self%row = row
+   end subroutine lower
+
+   !> Add the nodes by which the mesh has grown to `added` at either end; all of `nodes` at first.
+   pure subroutine widen(self, nodes, added)
+      class(slip_range_type), intent(inout) :: self
+      integer, intent(in) :: nodes, added
+      !> Beyond any slip; twice as much does not overflow.
+      real(wp), parameter :: beyond = 0.25_wp*huge(1.0_wp)
+      real(wp), allocatable :: margin(:)
+
+      if (.not. allocated(self%lowest)) then
+         allocate (self%lowest(nodes), source=beyond)
+         allocate (self%highest(nodes), source=-beyond)
+      else if (added > self%added) then
+         allocate (margin(added - self%added), source=beyond)
+         self%lowest = [margin, self%lowest, margin]
+         self%highest = [-margin, self%highest, -margin]
+      end if
+      self%added = added
+   end subroutine widen
+
+   !> Add the slip of the nodes in contact.
+   pure subroutine add_slip(self, model, state)
+      class(slip_range_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      real(wp) :: slip(model%nodes())
+
+      call self%widen(model%nodes(), model%added)
+      slip = state%fields%slip()
+      where (in_contact(state%status))
+         self%lowest = min(self%lowest, slip)
+         self%highest = max(self%highest, slip)
+      end where
+   end subroutine add_slip
+
+   !> Estimates of the largest stresses of a state, force/length^2, as for half-planes; -1 for a body without them. The von Mises
+   !> stress only where it is compared with a yield strength.
+   subroutine estimate_stresses(model, state, patches, estimates)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      type(patch_type), intent(in) :: patches(:)
+      real(wp), intent(out) :: estimates(candidate_count)
+      type(samples_type) :: samples
+
+      call sample_surface(model, state, patches, samples)
+      call add_body(model%scene%lower, 1)
+      call add_body(model%scene%upper, 2)
+
+   contains
+
+      subroutine add_body(body, side)
+         type(body_type), intent(in) :: body
+         integer, intent(in) :: side
+         real(wp) :: bulk, hoop
+
+         estimates([candidate_tension(side), candidate_von_mises(side)]) = -1.0_wp
+         if (.not. has_interior(body)) return
+         bulk = state%fields%motion(bulk_motions(side))
+         ! A circle is in tension also beside a contact without shear, in proportion to the force.
+         hoop = 0.0_wp
+         if (body%circular()) hoop = state%fields%force(motion_approach)/(pi*body%radius)
+         associate (stress => bulk + merge(2.0_wp, -2.0_wp, side == 1)*samples%integral - samples%pressure)
+            estimates(candidate_tension(side)) = max(bulk, 0.0_wp, maxval(stress)) + hoop
+            if (body%yield_strength > 0.0_wp) &
+               estimates(candidate_von_mises(side)) = largest_von_mises(model, state, patches, samples, stress, body, side, bulk)
+         end associate
+      end subroutine add_body
+   end subroutine estimate_stresses
+
+   !> Tractions at the edges of the patches and at some of their nodes, also beside edges of stick zones.
+   subroutine sample_surface(model, state, patches, samples)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      type(patch_type), intent(in) :: patches(:)
+      type(samples_type), intent(out) :: samples
+      integer, parameter :: most_between = 12
+      logical :: is_sample(model%nodes())
+      integer, allocatable :: nodes(:)
+      integer :: first, last, i, j
+
+      is_sample = .false.
+      do i = 1, size(patches)
+         associate (patch => patches(i))
+            is_sample(patch%first:patch%last:max(1, (patch%last - patch%first)/most_between)) = .true.
+            do j = 1, size(patch%stick)
+               is_sample([patch%stick(j)%first, patch%stick(j)%last]) = .true.
+            end do
+         end associate
+      end do
+      nodes = pack([(i, i=1, size(is_sample))], is_sample)
+      first = minval(patches%first)
+      last = maxval(patches%last)
+      samples%arc = [model%arc(nodes), patches%left, patches%right]
+      samples%integral = [(integral_over(first, last, model%arc(nodes(i))), i=1, size(nodes)), &
+                          (integral_at_edge(-1, patches(i)), i=1, size(patches)), &
+                          (integral_at_edge(1, patches(i)), i=1, size(patches))]/pi
+      samples%pressure = [state%fields%pressure(nodes), (0.0_wp, i=1, 2*size(patches))]
+      samples%shear = [state%fields%shear(nodes), (0.0_wp, i=1, 2*size(patches))]
+
+   contains
+
+      !> Integral of tau/(t - x) dt over the intervals of some nodes, with constant tau in each.
+      pure real(wp) function integral_over(from, to, x)
+         integer, intent(in) :: from, to
+         real(wp), intent(in) :: x
+         real(wp), parameter :: least = tiny(1.0_wp)
+
+         associate (place => model%arc(from:to) - x, half => 0.5_wp*model%width(from:to))
+            integral_over = sum(state%fields%shear(from:to)*(log(max(abs(place + half), least)) - &
+                                                             log(max(abs(place - half), least))))
+         end associate
+      end function integral_over
+
+      !> The same over all nodes at the left (-1) or right edge of a patch. In the patch t = c - a cos(angle): the integral over t
+      !> of the root is a^2/2 (angle - sin cos), that of the root over t - x is a (sin - side angle).
+      pure real(wp) function integral_at_edge(side, patch) result(integral)
+         integer, intent(in) :: side
+         type(patch_type), intent(in) :: patch
+         real(wp) :: half, edge, angle(patch%first:patch%last + 1), root(patch%first:patch%last)
+
+         half = 0.5_wp*patch%length()
+         edge = merge(patch%right, patch%left, side > 0)
+         integral = integral_over(first, patch%first - 1, edge) + integral_over(patch%last + 1, last, edge)
+         if (.not. half > 0.0_wp) return
+         associate (from => patch%first, to => patch%last)
+            angle(from) = 0.0_wp
+            angle(from + 1:to) = acos(max(-1.0_wp, min(1.0_wp, (patch%left + half - model%arc(from + 1:to) &
+                                                                + 0.5_wp*model%width(from + 1:to))/half)))
+            angle(to + 1) = pi
+            associate (a => angle(from:to), b => angle(from + 1:to + 1), force => state%fields%shear(from:to)*model%width(from:to))
+               root = 0.5_wp*half*(b - a - sin(b)*cos(b) + sin(a)*cos(a))
+               where (root > 0.0_wp) root = force/root*(sin(b) - sin(a) - side*(b - a))
+            end associate
+         end associate
+         integral = integral + sum(root)
+      end function integral_at_edge
+   end subroutine sample_surface
+
+   !> Estimate of the largest von Mises stress of a body, force/length^2: at the samples, and below each patch under line loads at
+   !> the nodes (Flamant: Johnson 1985, section 2.3). `stress`: sigma_xx at the samples.
+   real(wp) function largest_von_mises(model, state, patches, samples, stress, body, side, bulk) result(largest)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      type(patch_type), intent(in) :: patches(:)
+      type(samples_type), intent(in) :: samples
+      type(body_type), intent(in) :: body
+      integer, intent(in) :: side
+      real(wp), intent(in) :: stress(:), bulk
+      integer, parameter :: across = 12
+      !> Depths over the half-width, up to that of the largest stress under an ellipse of pressure.
+      real(wp), parameter :: depths(6) = [0.1_wp, 0.2_wp, 0.3_wp, 0.4_wp, 0.55_wp, 0.7_wp]
+      real(wp), dimension(model%nodes()) :: place, square, radial
+      real(wp) :: sign, out_of_plane, depth
+      integer :: i, j, k
+
+      sign = merge(1.0_wp, -1.0_wp, side == 1)
+      out_of_plane = 0.0_wp
+      if (model%scene%plane == plane_strain) out_of_plane = body%material%poisson_ratio
+      largest = of_components(bulk, 0.0_wp, 0.0_wp)
+      do i = 1, size(samples%arc)
+         largest = max(largest, of_components(stress(i), -samples%pressure(i), samples%shear(i)))
+      end do
+      do i = 1, size(patches)
+         do k = 1, size(depths)
+            depth = 0.5_wp*depths(k)*patches(i)%length()
+            do j = 1, across
+               place = patches(i)%left + patches(i)%length()*(j - 0.5_wp)/across - model%arc
+               square = place**2 + depth**2
+               radial = -2.0_wp/pi*model%width*(state%fields%pressure*depth + sign*state%fields%shear*place)/square**2
+               largest = max(largest, of_components(bulk + sum(radial*place**2), depth**2*sum(radial), depth*sum(radial*place)))
+            end do
+         end do
+      end do
+
+   contains
+
+      pure real(wp) function of_components(xx, yy, xy)
+         real(wp), intent(in) :: xx, yy, xy
+
+         of_components = von_mises_stress([xx, yy, xy, out_of_plane*(xx + yy)])
+      end function of_components
+   end function largest_von_mises
+
+end module mfv_load_extremes

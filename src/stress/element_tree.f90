@@ -1,0 +1,209 @@
+!> Cauchy integrals over many elements of a surface: distant groups of them act through their moments (Barnes and Hut 1986; Greengard
+!> and Rokhlin 1987, J. Comput. Phys. 73, 325, for logarithmic potentials).
+!>
+!> With the traction sigma along the surface s, in the complex plane, and the middle c of a group of elements
+!>
+!>     integral of sigma/(s - z) ds = - sum over k >= 0 of M_k/(z - c)^(k+1),  M_k = integral of sigma (s - c)^k ds.
+!>
+!> Groups are the nodes of a binary tree. Moments of its leaves are found by quadrature, the others from those of their halves.
+module mfv_element_tree
+   use mfv_kinds, only: wp
+   implicit none
+   private
+   public :: element_tree_type, new_element_tree, last_not_above
+
+   !> Most elements of a leaf; radii beyond which a group acts through its moments; the highest moment.
+   integer, parameter :: leaf_size = 12
+   real(wp), parameter :: distant = 3.0_wp
+   integer, parameter :: most_moments = ceiling(digits(1.0_wp)*log(2.0_wp)/log(distant))
+   !> Most groups that wait for their turn: one for each level of the tree, at most.
+   integer, parameter :: most_levels = 64
+
+   type :: element_tree_type
+      private
+      !> First and last elements of the groups, and the first of both halves (0: a leaf); shapes (groups).
+      integer, allocatable :: first(:), last(:), halves(:)
+      !> Middles and radii of the groups; moments of sigma and of its imaginary part over radius^k, shapes (0:most_moments, groups).
+      complex(wp), allocatable :: middle(:), moments(:, :), shear_moments(:, :)
+      real(wp), allocatable :: radius(:)
+   contains
+      procedure :: find_distant
+      procedure :: leaves
+   end type element_tree_type
+
+contains
+
+   !> Elements along a surface with sigma at quadrature points: `place` of the points, and `weight` such that the integral of f ds
+   !> over an element is the sum of f times weight; shapes (points, elements). `ends`: of the elements, shape (2, elements).
+   pure type(element_tree_type) function new_element_tree(ends, place, sigma, weight) result(self)
+      complex(wp), intent(in) :: ends(:, :), place(:, :), sigma(:, :), weight(:, :)
+      integer :: group, groups, middle
+
+      groups = 2*size(place, 2)
+      allocate (self%first(groups), self%last(groups), self%halves(groups))
+      groups = min(size(place, 2), 1)
+      self%first(:groups) = 1
+      self%last(:groups) = size(place, 2)
+      group = 1
+      do while (group <= groups)
+         self%halves(group) = 0
+         if (self%last(group) - self%first(group) >= leaf_size) then
+            self%halves(group) = groups + 1
+            middle = (self%first(group) + self%last(group))/2
+            self%first(groups + 1:groups + 2) = [self%first(group), middle + 1]
+            self%last(groups + 1:groups + 2) = [middle, self%last(group)]
+            groups = groups + 2
+         end if
+         group = group + 1
+      end do
+      self%first = self%first(:groups)
+      self%last = self%last(:groups)
+      self%halves = self%halves(:groups)
+      allocate (self%middle(groups), self%radius(groups))
+      allocate (self%moments(0:most_moments, groups), self%shear_moments(0:most_moments, groups))
+      do group = groups, 1, -1
+         if (self%halves(group) == 0) then
+            associate (i => self%first(group), j => self%last(group))
+               call add_leaf(self, group, ends(:, i:j), place(:, i:j), sigma(:, i:j), weight(:, i:j))
+            end associate
+         else
+            call join_halves(self, group)
+         end if
+      end do
+   end function new_element_tree
+
+   !> Middle, radius and moments of a leaf with these elements, see new_element_tree.
+   pure subroutine add_leaf(self, group, ends, place, sigma, weight)
+      type(element_tree_type), intent(inout) :: self
+      integer, intent(in) :: group
+      complex(wp), intent(in) :: ends(:, :), place(:, :), sigma(:, :), weight(:, :)
+      complex(wp) :: terms(size(place, 1), size(place, 2)), shear(size(place, 1), size(place, 2))
+      integer :: k
+
+      self%middle(group) = 0.5_wp*(ends(1, 1) + ends(2, size(ends, 2)))
+      self%radius(group) = max(maxval(abs(ends - self%middle(group))), tiny(1.0_wp))
+      terms = sigma*weight
+      shear = aimag(sigma)*weight
+      do k = 0, most_moments
+         self%moments(k, group) = sum(terms)
+         self%shear_moments(k, group) = sum(shear)
+         terms = terms*((place - self%middle(group))/self%radius(group))
+         shear = shear*((place - self%middle(group))/self%radius(group))
+      end do
+   end subroutine add_leaf
+
+   !> Middle, radius and moments of a group from those of its halves.
+   pure subroutine join_halves(self, group)
+      type(element_tree_type), intent(inout) :: self
+      integer, intent(in) :: group
+      real(wp) :: radius
+      complex(wp) :: middle
+      integer :: half
+
+      associate (halves => [self%halves(group), self%halves(group) + 1])
+         middle = 0.5_wp*sum(self%middle(halves))
+         radius = maxval(abs(self%middle(halves) - middle) + self%radius(halves))
+         self%moments(:, group) = 0.0_wp
+         self%shear_moments(:, group) = 0.0_wp
+         do half = 1, 2
+            associate (part => halves(half))
+               associate (shrink => self%radius(part)/radius, shift => (self%middle(part) - middle)/radius)
+                  self%moments(:, group) = self%moments(:, group) + about_other(self%moments(:, part), shrink, shift)
+                  self%shear_moments(:, group) = self%shear_moments(:, group) &
+                                                 + about_other(self%shear_moments(:, part), shrink, shift)
+               end associate
+            end associate
+         end do
+      end associate
+      self%middle(group) = middle
+      self%radius(group) = radius
+   end subroutine join_halves
+
+   !> Moments about a middle from which the old one is a `shift` of radii away, with a radius of which the old one is `shrink`.
+   pure function about_other(moments, shrink, shift) result(shifted)
+      complex(wp), intent(in) :: moments(0:), shift
+      real(wp), intent(in) :: shrink
+      complex(wp) :: shifted(0:most_moments)
+      integer :: i, k
+
+      shifted = [(moments(k)*shrink**k, k=0, most_moments)]
+      ! Binomial sums, in place.
+      do i = 1, most_moments
+         do k = most_moments, i, -1
+            shifted(k) = shifted(k) + shift*shifted(k - 1)
+         end do
+      end do
+   end function about_other
+
+   !> Number of leaves.
+   pure integer function leaves(self)
+      class(element_tree_type), intent(in) :: self
+
+      leaves = count(self%halves == 0)
+   end function leaves
+
+   !> Integrals over the distant elements of sigma/(s - z) ds, of its derivative sigma/(s - z)^2 ds, and of aimag(sigma)/(s - z) ds.
+   !> The others are in the first `number` ranges of elements `near`, shape (2, leaves).
+   pure subroutine find_distant(self, z, integrals, near, number)
+      class(element_tree_type), intent(in) :: self
+      complex(wp), intent(in) :: z
+      complex(wp), intent(out) :: integrals(3)
+      integer, intent(inout) :: near(:, :)
+      integer, intent(out) :: number
+      integer :: waiting(most_levels), group, places
+      complex(wp) :: away
+
+      integrals = 0.0_wp
+      number = 0
+      places = min(size(self%first), 1)
+      waiting(1) = 1
+      do while (places > 0)
+         group = waiting(places)
+         places = places - 1
+         away = z - self%middle(group)
+         if (real(away, wp)**2 + aimag(away)**2 > (distant*self%radius(group))**2) then
+            call add_group(self%moments(:, group), self%shear_moments(:, group), self%radius(group), away, integrals)
+         else if (self%halves(group) == 0) then
+            number = number + 1
+            near(:, number) = [self%first(group), self%last(group)]
+         else
+            waiting(places + 1:places + 2) = self%halves(group) + [1, 0]
+            places = places + 2
+         end if
+      end do
+   end subroutine find_distant
+
+   !> Add the integrals of a group, at a point `away` from its middle.
+   pure subroutine add_group(moments, shear_moments, radius, away, integrals)
+      complex(wp), intent(in) :: moments(0:), shear_moments(0:), away
+      real(wp), intent(in) :: radius
+      complex(wp), intent(inout) :: integrals(3)
+      complex(wp) :: ratio, sums(3)
+      integer :: k
+
+      ratio = radius/away
+      sums = 0.0_wp
+      do k = min(most_moments, ceiling(digits(1.0_wp)*log(2.0_wp)/(-log(abs(ratio))))), 0, -1
+         sums = sums*ratio + [moments(k), (k + 1)*moments(k), shear_moments(k)]
+      end do
+      integrals = integrals + [-sums(1)/away, sums(2)/away**2, -sums(3)/away]
+   end subroutine add_group
+
+   !> Index of the last of ascending values that is not above x; 0 for none.
+   pure integer function last_not_above(values, x) result(last)
+      real(wp), intent(in) :: values(:), x
+      integer :: beyond, middle
+
+      last = 0
+      beyond = size(values) + 1
+      do while (beyond - last > 1)
+         middle = (last + beyond)/2
+         if (values(middle) <= x) then
+            last = middle
+         else
+            beyond = middle
+         end if
+      end do
+   end function last_not_above
+
+end module mfv_element_tree

@@ -1,0 +1,93 @@
+"""The natural scale of every quantity that may vanish by symmetry or at small loads, in one table.
+
+An error is relative to the quantity itself or to this scale, whichever is larger.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+
+import numpy as np
+
+import mfv
+
+#: Names of sides in those of fields.
+SIDES = [("left", "right")]
+#: Part of the natural scale below which a quantity that is positive, such as a dissipation, counts as zero.
+NEGLIGIBLE = 1.0e-6
+#: Coefficient of friction below which a tangential force is relative to the normal force.
+SLIPPERY = 1.0e-3
+
+#: Names of quantities and the attribute of `Scales` that is their scale; the first that matches counts.
+_TABLE = [
+    (r".*(left|right)|contact_centre.*|.*_edge|.*tension_x|x|contact_length|slip_zone.*", "half_width"),
+    (r"stick_ratio.*|edge_stick_ratio|patch_shift.*|change|loss_factor|creepage_number", "one"),
+    (r"dissipation_number", "friction_squared"),
+    (r"tangential_force|force_amplitude", "friction_force"),
+    (r"normal_force", "normal_force"),
+    (r"moment", "moment"),
+    (r"shift|shift_drift|shift_amplitude|slip|.*tangential_displacement", "shift"),
+    (r"approach|approach_drift|gap|.*normal_displacement", "approach"),
+    (r"rotation|rotation_drift", "rotation"),
+    (r"shear|peak_shear|.*tension|.*_bulk_stress", "shear"),
+    (r"pressure|peak_pressure", "pressure"),
+    (r".*_contraction.*", "contraction"),
+    (r"friction_work", "work_per_length"),
+    (r"dissipation|.*cycle_dissipation|.*_work", "work"),
+    (r"creepage", "creepage"),
+]  # fmt: skip
+#: Those that are positive where they are not zero: relative to themselves unless negligible.
+_POSITIVE = (
+    r"loss_factor|dissipation|dissipation_number|.*cycle_dissipation|peak_pressure|peak_shear|contact_length|"
+    r"force_amplitude|shift_amplitude|friction_work"
+)
+
+
+def other_side(name: str) -> str:
+    """The same on the other side: left for right."""
+    for left, right in SIDES:
+        if left in name.split("_"):
+            return name.replace(left, right)
+        if right in name.split("_"):
+            return name.replace(right, left)
+    return name
+
+
+class Scales:
+    """Scales of a result: of the largest loads of its history, at the end of the steps."""
+
+    def __init__(self, result: mfv.Result) -> None:
+        summary, x = result.summary, result.mesh.x
+        steps = [*result.steps, summary]
+        self.one = 1.0
+        length = float(summary.get("contact_length", math.nan))
+        span = float(summary.get("contact_right", math.nan)) - float(summary.get("contact_left", math.nan))
+        self.half_width = 0.5 * (span if span > 0 else length if length > 0 else float(x[-1] - x[0]))
+        friction = result.mesh.get("static_friction")
+        mu = 0.0 if friction is None else float(np.max(friction))
+        self.friction_squared = mu**2
+        self.normal_force = max(abs(float(step.normal_force)) for step in steps)
+        self.friction_force = max(mu, SLIPPERY) * self.normal_force
+        # A matrix has none.
+        modulus = float(result.scene.get("contact_modulus", self.normal_force / max(abs(float(summary.approach)), 1e-300)))
+        self.pressure = 2.0 * self.normal_force / (math.pi * self.half_width)
+        bulk = max((abs(float(step[name])) for step in steps for name in step if name.endswith("bulk_stress")), default=0.0)
+        self.shear = max(mu * self.pressure, bulk)
+        self.approach = self.normal_force / (math.pi * modulus)
+        self.shift = max(mu * self.approach, bulk * self.half_width / (2.0 * modulus))
+        self.rotation = self.approach / self.half_width
+        self.moment = self.normal_force * self.half_width
+        self.contraction = self.shift * self.half_width
+        self.work = mu * self.normal_force * self.shift
+        self.work_per_length = self.work / self.half_width
+        self.creepage = mu * self.half_width * abs(float(result.scene.get("curvature", 0.0)))
+
+    def natural(self, name: str) -> float:
+        """Scale of a quantity that can be zero; 0 if it has none."""
+        return next((float(getattr(self, attribute)) for pattern, attribute in _TABLE if re.fullmatch(pattern, name)), 0.0)
+
+    def where_it_vanishes(self, name: str) -> float:
+        """The scale to which errors are relative if the quantity is smaller; a negligible part of the natural scale of those that are
+        positive."""
+        return self.natural(name) * (NEGLIGIBLE if re.fullmatch(_POSITIVE, name) else 1.0)

@@ -1,0 +1,256 @@
+"""The verdict of every number of a result: right, within its bar, flagged, not known, or a finding."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import NamedTuple
+
+import numpy as np
+
+import mfv
+
+from .fields import NUMBERS, WORK
+from .problem import Problem
+from .scales import Scales
+from .truth import Truth
+
+#: An error up to this part of the quantity (or of its natural scale) is right.
+RIGHT = 0.01
+#: An error within this many bars is as announced.
+BARS = 3.0
+#: Bars that are beyond this many of their own are counted.
+STATISTIC = 2.0
+#: The truth is known if it is at least this many times better known than the error is large.
+KNOWN = 3.0
+
+WORDS = ("right", "within bars", "flagged", "unknown", "finding")
+GROUPS = ("summary", "observables", "cycles", "patches")
+#: What is not a number of the problem: counts of nodes and of work, numbers of cycles and blocks.
+SKIPPED = WORK | NUMBERS | {"contact_nodes", "patch", "cycle", "cycles", "block", "friction_work"}
+#: Counted in whole intervals, as their descriptions say: right up to an interval.
+COUNTED = {"summary/contact_half_width", "summary/stick_ratio"}
+
+_EDGES = r".*half_width|half_width_number|contact_(length|left|right|centre.*)|patch_shift.*|patches"
+_STICK = r"(edge_)?stick_ratio|stick_(left|right|length|zones)"
+_TRACTIONS = r"peak_(pressure|shear)|(pressure|shear)_number"
+_TENSION = r"(lower|upper)_tension(_x)?"
+_CYCLE = r"cycle_dissipation|dissipation_number|loss_factor|.*_force_work|.*stress_work|moment_work"
+_MOTIONS = r"approach.*|shift.*|rotation.*|.*stiffness.*"
+#: Names after "not resolved:" in a warning, and the quantities that follow from the one that is named; others stand for themselves.
+NAMED = {
+    "contact_half_width": r"(contact_|edge_)?half_width(_number)?|contact_(left|right|centre)",
+    "contact_length": r"contact_(length|left|right|centre)|patches",
+    "stick_ratio": _STICK,
+    "peak_pressure": r"peak_pressure|pressure_number",
+    "peak_shear": r"peak_shear|shear_number",
+    "tension": _TENSION,
+    "lower_tension": r"lower_tension(_x)?",
+    "upper_tension": r"upper_tension(_x)?",
+    "tension at the left edge": _TENSION,
+    "tension at the right edge": _TENSION,
+    "cycle_dissipation": _CYCLE,
+    "tangential_stiffness": r"tangential_stiffness|stiffness_number",
+    "stick_ratio_loading": r"stick_ratio_loading",
+    "stick_ratio_reversal": r"stick_ratio_(reversal|lowest|highest)",
+    "stick_ratio_return": r"stick_ratio_(return|lowest|highest)",
+}
+#: Other warnings of the library and the quantities that they name.
+FLAGS = [
+    (
+        r"only \d+ nodes? (is|are) +in contact: half-width, stick ratio and tractions",
+        f"{_EDGES}|{_STICK}|stick_ratio_.*|{_TRACTIONS}",
+    ),
+    (r"needs about .* (equal intervals|nodes in each patch)", f"{_TRACTIONS}|{_EDGES}"),
+    (r"reaches the end of the surface", f"{_TRACTIONS}|{_TENSION}"),
+    (r"no interval of the mesh ends at the corner", f"{_EDGES}|{_TRACTIONS}"),
+    (r"rounded edges .* not resolved", f"{_STICK}|stick_ratio_.*|{_TRACTIONS}|{_TENSION}|dissipation|{_CYCLE}"),
+    (r"largest relative residual", ".*"),
+    (r"of the worn area is from cycles", r"worn_area|wear_depth"),
+    (r"datum of the displacements|exceeds the datum", _MOTIONS),
+]
+#: Positions have the bars of the half-width and, of stick zones, of the stick ratio times the length of the contact.
+_POSITION = r"contact_(left|right|centre.*)|(lower|upper)_tension_x"
+_STICK_POSITION = r"stick_(left|right|length)"
+#: Bars of /error_estimate that belong to a quantity: the error of a product has those of its factors.
+BARS_OF = {
+    "contact_half_width": ("contact_half_width",),
+    "edge_half_width": ("contact_half_width",),
+    "contact_length": ("contact_half_width",),
+    "half_width_number": ("contact_half_width",),
+    "stick_ratio": ("stick_ratio",),
+    "edge_stick_ratio": ("stick_ratio",),
+    "peak_pressure": ("peak_pressure",),
+    "pressure_number": ("peak_pressure", "contact_half_width"),
+    "peak_shear": ("peak_shear",),
+    "shear_number": ("peak_shear", "contact_half_width"),
+    "dissipation": ("dissipation",),
+    "lower_tension": ("lower_tension",),
+    "upper_tension": ("upper_tension",),
+    "cycle_dissipation": ("cycle_dissipation",),
+    "dissipation_number": ("cycle_dissipation",),
+    "tangential_stiffness": ("tangential_stiffness",),
+    "stiffness_number": ("tangential_stiffness",),
+    "secant_stiffness": ("secant_stiffness",),
+    "loss_factor": ("loss_factor",),
+}
+
+
+class Verdict(NamedTuple):
+    """`word`: one of WORDS; relative error, bar (NaN without one) and uncertainty of the truth; the value and the true one."""
+
+    word: str
+    error: float
+    bar: float
+    uncertainty: float
+    value: float
+    true: float
+
+    @property
+    def holds(self) -> bool | None:
+        """Whether the error is within twice the bar; None if there is no bar or the truth does not decide."""
+        if not 0.0 < self.bar < math.inf:
+            return None
+        if self.error + self.uncertainty <= STATISTIC * self.bar:
+            return True
+        return False if self.error - self.uncertainty > STATISTIC * self.bar else None
+
+
+def quantities(result: mfv.Result) -> dict[str, np.ndarray]:
+    """Every quantity that has a verdict, by group/name."""
+    return {
+        f"{group}/{name}": np.atleast_1d(np.asarray(part[name], dtype=float))
+        for group in GROUPS
+        for part in [getattr(result, group)]
+        for name in part
+        if name not in SKIPPED
+    }
+
+
+def public_name(path: str) -> str:
+    """The name by which warnings call a quantity."""
+    return "cycle_dissipation" if path == "cycles/dissipation" else path.split("/")[1]
+
+
+def judge(problem: Problem, base: mfv.Result, truth: Truth) -> dict[str, Verdict]:
+    """The verdict of every quantity of a complete run."""
+    coarser, finer = quantities(truth.coarser), quantities(truth.finer)
+    scales, limit = Scales(truth.finer), max(RIGHT, _accuracy(problem))
+    patterns = flagged_quantities(base)
+    found = {}
+    for path, values in quantities(base).items():
+        group, name = path.split("/")
+        there = [_aligned(group, base, result, fine.get(path)) for result, fine in ((truth.coarser, coarser), (truth.finer, finer))]
+        if there[0] is None or there[1] is None or any(len(other) != len(values) for other in there):
+            continue
+        # Of cycles all have the relative bar of the last one.
+        bar = bar_of(base, path, float(values[-1]) if len(values) else math.nan)
+        flagged = bar == math.inf or any(re.fullmatch(pattern, public_name(path)) for pattern in patterns)
+        right = limit
+        if path in COUNTED:
+            right = max(limit, 1.05 * float(np.max(base.mesh.width)) / scales.half_width)
+        size = np.nanmax(np.abs(there[1]), initial=0.0) if group == "patches" else 0.0
+        found[path] = max(
+            (
+                _judge_one(value, closed_or(truth, path, one), two, scales.where_it_vanishes(name), size, right, bar, flagged, name)
+                for value, one, two in zip(values, *there)
+            ),
+            key=lambda verdict: (WORDS.index(verdict.word), verdict.error),
+            default=Verdict("right", 0.0, bar, 0.0, math.nan, math.nan),
+        )
+    return found
+
+
+def closed_or(truth: Truth, path: str, one: float) -> float:
+    """The value on the coarser mesh of the truth or, if there is one, the closed form, which it has to agree with."""
+    return truth.closed.get(path, one)
+
+
+def _accuracy(problem: Problem) -> float:
+    """The error that the problem allows: by large increments, or by blocks of cycles of wear."""
+    accuracy = float(problem.one("solver").get("accuracy", 0.0)) if problem.has("solver") else 0.0
+    return max(accuracy, float(problem.one("wear").get("tolerance", 0.05)) if problem.has("wear") else 0.0)
+
+
+def _aligned(group: str, base: mfv.Result, fine: mfv.Result, values: np.ndarray | None) -> np.ndarray | None:
+    """Values of the cycles that the base has; of patches if they are as many."""
+    if values is None or group != "cycles":
+        return values
+    places = [np.flatnonzero(fine.cycles.cycle == cycle) for cycle in base.cycles.cycle]
+    if any(len(place) == 0 for place in places) or len(values) != len(fine.cycles.cycle):
+        return None
+    return values[np.concatenate(places)]
+
+
+def _judge_one(
+    value: float, one: float, two: float, natural: float, size: float, right: float, bar: float, flagged: bool, name: str
+) -> Verdict:
+    """The verdict of one number: `one`, `two`: on the fine meshes; `size`: largest of its kind."""
+    if math.isnan(value):
+        both = math.isnan(one) and math.isnan(two)
+        return Verdict("right" if both else "flagged", 0.0, math.nan, 0.0, value, two)
+    if math.isnan(one) or math.isnan(two):
+        # A half-width is undefined where there are several patches, whose number has its own verdict.
+        undefined = math.isnan(one) and math.isnan(two) and not flagged and not re.fullmatch(_EDGES, name)
+        return Verdict("finding" if undefined else "unknown", math.inf, bar, 0.0, value, two)
+    scale = max(abs(two), natural, size, 1e-300)
+    error, uncertainty = abs(value - two) / scale, 2.0 * abs(two - one) / scale
+    if name.endswith("tension_x"):
+        # Of two equal tensions at both edges one is the largest by round-off.
+        error = min(error, abs(value + two) / scale)
+        uncertainty = min(uncertainty, 2.0 * abs(two + one) / scale)
+    relative_bar = bar / scale if math.isfinite(bar) else math.nan
+    if error + uncertainty <= right or (error <= right and uncertainty <= right):
+        word = "right"
+    elif error + uncertainty <= BARS * relative_bar:
+        word = "within bars"
+    elif flagged:
+        word = "flagged"
+    elif uncertainty > error / KNOWN:
+        word = "unknown"
+    elif error - uncertainty > max(right, 0.0 if math.isnan(relative_bar) else BARS * relative_bar):
+        word = "finding"
+    else:
+        word = "unknown"
+    return Verdict(word, error, relative_bar, uncertainty, value, two)
+
+
+def bar_of(base: mfv.Result, path: str, value: float) -> float:
+    """Bar of a quantity with a value: NaN without one; infinite where MFV says that there is no limit or that it is not resolved,
+    or why there is no bar at all."""
+    group, name = path.split("/")
+    if re.fullmatch(f"{_POSITION}|{_STICK_POSITION}", name) and group != "cycles":
+        return _bar_of_position(base, name)
+    names = BARS_OF.get(public_name(path), ())
+    several = group == "patches" and len(base.patches.patch) > 1
+    if not names or several or path in COUNTED:
+        return math.nan
+    relative = 0.0
+    for one in names:
+        if f"{one}_error" not in base.error_estimate:
+            return math.inf if str(base.attributes.get("error_estimate", "")).startswith("none") else math.nan
+        error, of = float(base.error_estimate[f"{one}_error"]), abs(float(base.error_estimate[one]))
+        if not math.isfinite(error):
+            return math.inf
+        if one == name and group == "observables":
+            return error
+        relative += error / of if of > 0.0 else 0.0
+    return relative * abs(value)
+
+
+def _bar_of_position(base: mfv.Result, name: str) -> float:
+    """Both edges may be in error by the bar of the half-width, in opposite directions."""
+    bar = 2.0 * bar_of(base, "observables/contact_half_width", 1.0)
+    if re.fullmatch(_STICK_POSITION, name):
+        bar += bar_of(base, "observables/stick_ratio", 1.0) * float(base.summary.contact_length)
+    return bar
+
+
+def flagged_quantities(base: mfv.Result) -> list[str]:
+    """Patterns of the names of quantities that the warnings of a result name."""
+    warnings = base.attributes.get("warnings", "").splitlines()
+    found = [names for text, names in FLAGS if any(re.search(text, warning) for warning in warnings)]
+    for warning in warnings:
+        for names in re.findall(r"not resolved: ([^;]*)", warning):
+            found += [NAMED.get(name, re.escape(name)) for name in names.split(", ")]
+    return found
