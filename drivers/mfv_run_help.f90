@@ -68,8 +68,8 @@ module mfv_run_help
       '  0     complete: every step was reached', &
       '  2     the input cannot be used; the message names file, line, group, key and value', &
       '  3     the computation ended early; the result up to that load is written: gross sliding, no', &
-      '        admissible continuation, separated, inadmissible step, mesh exceeded; with the', &
-      '        conventional algorithm also cycling, inadmissible', &
+      '        admissible continuation, separated, inadmissible step, mesh exceeded, not converged;', &
+      '        with the conventional algorithm also cycling, inadmissible', &
       '  4     a file could not be read or written', &
       '  130   interrupted; the result up to that load is written, and --resume continues', &
       '', &

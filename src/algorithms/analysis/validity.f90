@@ -9,7 +9,7 @@ module mfv_validity
    use mfv_motions, only: motion_approach, motion_shift, motion_rotation, control_displacement
    use mfv_node_status, only: in_contact
    use mfv_resolution, only: find_unresolved, poorest_patch, unresolved_type
-   use mfv_scene, only: scene_type
+   use mfv_scene, only: most_of_datum, scene_type
    use mfv_simulation, only: mark_of, mark_yield, simulation_type
    use mfv_state_interior, only: find_largest_von_mises
    use mfv_stress_search, only: largest_type
@@ -63,7 +63,7 @@ contains
       call check_slide(simulation, simulation%contact%model%scene, warnings)
       if (simulation%cycle_count > 0) call check_drift(simulation%cycles(simulation%cycle_count), warnings)
       largest = simulation%contact%certificate%largest()
-      if (largest > max(good, simulation%contact%model%scene%method%allowed_residual())) &
+      if (largest > good) &
          call add_text(warnings, 'the largest relative residual is '//to_text(largest, 2)// &
                        ', well above rounding errors: results may be inaccurate; /certificate in the result file lists the '// &
                        'residuals by name')
@@ -143,25 +143,21 @@ contains
       end if
    end subroutine check_accuracy
 
-   !> A default datum that another case would not have; and a datum inside the contact: the compliance of a flat contact of the
-   !> half-width a is proportional to ln(2 d/a).
+   !> A default datum that another case would not have; and a datum inside the contact (see hint_of_datum in mfv_simulation).
    subroutine check_datum(simulation, scene, warnings)
       type(simulation_type), intent(in) :: simulation
       type(scene_type), intent(in) :: scene
       type(string_type), allocatable, intent(inout) :: warnings(:)
-      real(wp), parameter :: most = 1.2_wp
       real(wp) :: half_width
 
-      if (scene%lower%circular() .or. scene%upper%circular() .or. scene%lower%shape == shape_matrix) return
+      if (.not. scene%has_datum()) return
       if (simulation%contact%state%contact_nodes() == 0) return
       if (scene%lower%datum_of_case .or. scene%upper%datum_of_case) &
          call add_text(warnings, 'the datum of the displacements, '//to_text(scene%datum(), 4)//', is the half-width of the '// &
                        'contact at the largest normal_force of this case, or else of its mesh: give datum to compare '// &
                        'approaches, shifts and stiffnesses with those of other cases')
-      associate (arc => simulation%contact%model%arc, touching => in_contact(simulation%contact%state%status))
-         half_width = 0.5_wp*(maxval(arc, mask=touching) - minval(arc, mask=touching))
-      end associate
-      if (half_width > most*scene%datum()) &
+      half_width = simulation%contact%half_width()
+      if (half_width > most_of_datum*scene%datum()) &
          call add_text(warnings, 'the contact half-width of '//to_text(half_width, 3)//' exceeds the datum '// &
                        to_text(scene%datum(), 3)//' at which displacements are measured: approach and shift are too small for '// &
                        'their forces, or negative; set a larger datum')

@@ -1,7 +1,7 @@
 !> A scene: bodies, mesh, friction, load history and method. No files, no solution.
 module mfv_scene
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use mfv_body, only: body_type
+   use mfv_body, only: body_type, shape_matrix
    use mfv_compliance, only: coupling_full
    use mfv_friction, only: friction_type
    use mfv_interior, only: has_interior, interior_type, new_interior
@@ -14,8 +14,8 @@ module mfv_scene
    implicit none
    private
    public :: scene_type, both_rigid, mesh_request_type, step_type, method_type, control_keep, control_force, control_displacement, &
-             most_cycles, algorithm_mfv, algorithm_conventional, stepping_event, stepping_nominal, stepping_leap, stepping_auto, &
-             integration_second_order, integration_explicit, solver_auto, solver_dgesv, solver_reduced, solver_fft, &
+             most_cycles, most_of_datum, algorithm_mfv, algorithm_conventional, stepping_event, stepping_nominal, stepping_leap, &
+             stepping_auto, integration_second_order, integration_explicit, solver_auto, solver_dgesv, solver_reduced, solver_fft, &
              algorithm_names, stepping_names, integration_names, solver_names, friction_tolerance_part, most_by_points
 
    !> The Method of First Violation (dissertation section 2.3) or the conventional algorithm (2.2). Names here and below: values of
@@ -35,6 +35,8 @@ module mfv_scene
    character(*), parameter :: integration_names = 'second_order explicit'
    !> Most cycles of a step.
    integer, parameter :: most_cycles = 1000000
+   !> Largest contact half-width over the datum of the displacements.
+   real(wp), parameter :: most_of_datum = 1.2_wp
 
    !> A step of the load history; targets are reached linearly from the previous step.
    type :: step_type
@@ -80,7 +82,6 @@ module mfv_scene
       real(wp) :: accuracy = 0.0_wp
    contains
       procedure :: takes_accuracy
-      procedure :: allowed_residual
       procedure :: allowed_in_friction
    end type method_type
 
@@ -139,6 +140,7 @@ module mfv_scene
       procedure :: modulus
       procedure :: curvature
       procedure :: dundurs_beta
+      procedure :: has_datum
       procedure :: datum
       procedure :: arc_radius
       procedure :: x_of_arc
@@ -181,15 +183,6 @@ contains
 
       takes_accuracy = self%algorithm == algorithm_mfv .and. (self%stepping == stepping_auto .or. self%stepping == stepping_leap)
    end function takes_accuracy
-
-   !> Residual of the certificate that large increments may leave; 0 by events.
-   elemental real(wp) function allowed_residual(self)
-      class(method_type), intent(in) :: self
-      real(wp), parameter :: negligible = 1.0e-2_wp
-
-      allowed_residual = 0.0_wp
-      if (self%stepping == stepping_leap) allowed_residual = negligible*self%accuracy
-   end function allowed_residual
 
    !> The tolerance of the tractions for an increment with nonlinear friction: the given one, else that of the accuracy, if any.
    elemental real(wp) function allowed_in_friction(self) result(tolerance)
@@ -323,6 +316,13 @@ contains
          share = self%modulus()*(body%material%kolosov - 1.0_wp)/(4.0_wp*body%material%shear_modulus)
       end function share
    end function dundurs_beta
+
+   !> Whether the displacements are measured at a datum inside of bodies: half-planes and the like, not circles.
+   elemental logical function has_datum(self)
+      class(scene_type), intent(in) :: self
+
+      has_datum = .not. (self%lower%circular() .or. self%upper%circular() .or. self%lower%shape == shape_matrix)
+   end function has_datum
 
    !> Datum of the displacements of both bodies together, length: the mean of the logarithms of their datums, weighted with their
    !> flexibilities.

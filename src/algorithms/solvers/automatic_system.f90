@@ -58,6 +58,7 @@ contains
          self%iterations = self%iterations + system%iterations
          self%products = self%products + system%products
          self%name = system%name
+         self%gave_up = system%gave_up
          self%tolerance = system%tolerance
          self%rate_tolerance = system%rate_tolerance
       end subroutine solve_by

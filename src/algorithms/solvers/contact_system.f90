@@ -76,6 +76,8 @@ module mfv_contact_system
       !> Relative errors of states, and of rates but those of the loads, that iterative solvers may leave, if above the
       !> linear_tolerance of the scene.
       real(wp) :: allowed = 0.0_wp, allowed_in_rates = 0.0_wp
+      !> Whether the last solve failed although the constraints may determine the fields: the iteration did not converge.
+      logical :: gave_up = .false.
       !> Whether nodes change their status one by one, from event to event.
       logical :: one_by_one = .false.
    contains

@@ -26,6 +26,7 @@ module mfv_krylov_system
    use mfv_krylov_preconditioner, only: krylov_preconditioner_type
    use mfv_motions, only: motion_count, motion_shift, motion_wear, control_force, arm_unit
    use mfv_node_status
+   use mfv_reduced_system, only: reduced_system_type
    implicit none
    private
    public :: krylov_system_type
@@ -72,10 +73,14 @@ module mfv_krylov_system
       real(wp), allocatable :: pressure(:), shear(:), normal(:), tangential(:), found(:, :)
       !> The last rates of each kind.
       type(rates_type) :: last(kinds_of_rates)
+      !> Where the iteration fails.
+      type(reduced_system_type), allocatable :: direct
    contains
       procedure :: solve
    end type krylov_system_type
 
+   !> Most nodes in contact for the reduced system where the iteration fails: 200 MB.
+   integer, parameter :: most_direct = 2000
    !> Most restarts of the iteration.
    integer, parameter :: most_passes = 20
    !> Factor on the tolerance for single nodes, since the iteration controls the 2-norm only.
@@ -83,7 +88,7 @@ module mfv_krylov_system
 
 contains
 
-   !> See mfv_contact_system.
+   !> See mfv_contact_system. Where the iteration fails, the reduced system takes over, unless its matrix would be too large.
    subroutine solve(self, model, constraints, start, response, singular)
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -91,17 +96,35 @@ contains
       type(contact_fields_type), intent(in) :: start
       type(response_type), intent(inout) :: response
       logical, intent(out) :: singular
+
+      self%solves = self%solves + 1
+      self%gave_up = .false.
+      call solve_by_iteration(self, model, constraints, start, response, singular)
+      if (.not. singular) return
+      self%gave_up = size(self%contact) > most_direct
+      if (self%gave_up) return
+      if (.not. allocated(self%direct)) allocate (self%direct)
+      call self%direct%solve(model, constraints, start, response, singular)
+   end subroutine solve
+
+   !> Solve by iteration. `fails`: it does not converge, or the constraints do not determine the fields.
+   subroutine solve_by_iteration(self, model, constraints, start, response, fails)
+      class(krylov_system_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      type(constraints_type), intent(in) :: constraints
+      type(contact_fields_type), intent(in) :: start
+      type(response_type), intent(inout) :: response
+      logical, intent(out) :: fails
       type(prescribed_type) :: prescribed
       type(right_side_type) :: right
       real(wp), allocatable :: unknowns(:)
 
-      self%solves = self%solves + 1
       self%tolerance = margin*max(model%scene%method%linear_tolerance, self%allowed)
       self%rate_tolerance = max(self%tolerance, margin*self%allowed_in_rates)
       call fit_to_mesh(self, model)
       call choose_unknowns(self, model, constraints)
-      call prepare_preconditioner(self, model, singular)
-      if (singular) return
+      call prepare_preconditioner(self, model, fails)
+      if (fails) return
 
       if (constraints%rates_only) then
          call response%state%copy_from(start)
@@ -110,8 +133,8 @@ contains
          right = right_side(self, model, constraints%status, prescribed)
          unknowns = [start%pressure(self%contact)/self%stress, start%shear(self%held)/self%stress, &
                      start%motion(self%free)/self%motion_unit(self%free)]
-         call iterate(self, model, right, self%tolerance/margin, unknowns, singular)
-         if (singular) return
+         call iterate(self, model, right, self%tolerance/margin, unknowns, fails)
+         if (fails) return
          call set_fields(self, model, prescribed, right, unknowns, response%state)
       end if
 
@@ -119,8 +142,8 @@ contains
       right = right_side(self, model, constraints%status, prescribed)
       unknowns = guess_of_rates(self, self%last(constraints%kind))
       call iterate(self, model, right, merge(self%tolerance, self%rate_tolerance, constraints%kind == rates_of_loads)/margin, &
-                   unknowns, singular)
-      if (singular) return
+                   unknowns, fails)
+      if (fails) return
       call set_fields(self, model, prescribed, right, unknowns, response%rate)
       associate (last => self%last(constraints%kind))
          last%pressure = self%found(:, 1)
@@ -129,7 +152,7 @@ contains
          last%held = ends_of(self%held)
          last%motion = motion_of(self, right%motion, unknowns)
       end associate
-   end subroutine solve
+   end subroutine solve_by_iteration
 
    !> Set units, arms and work space for the present mesh; move the last rates to a mesh that has grown.
    subroutine fit_to_mesh(self, model)

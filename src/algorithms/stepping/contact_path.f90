@@ -120,7 +120,9 @@ module mfv_contact_path
       procedure :: extend_mesh_if_reached
       procedure :: widen
       procedure :: lengthens_for
+      procedure :: half_width
       procedure :: no_continuation
+      procedure :: not_converged
       procedure :: end_here
       procedure :: close_nearest
    end type contact_path_type
@@ -931,6 +933,16 @@ contains
       first_true = findloc(mask, .true., dim=1)
    end function first_true
 
+   !> Half-width of the contact between its outermost nodes, length.
+   pure real(wp) function half_width(self)
+      class(contact_path_type), intent(in) :: self
+
+      half_width = 0.0_wp
+      associate (arc => self%model%arc, touching => in_contact(self%state%status))
+         if (any(touching)) half_width = 0.5_wp*(maxval(arc, mask=touching) - minval(arc, mask=touching))
+      end associate
+   end function half_width
+
    !> Error: there is no admissible continuation, and why.
    subroutine no_continuation(self, why, error)
       class(contact_path_type), intent(in) :: self
@@ -945,6 +957,15 @@ contains
       end associate
       call self%end_here(MFV_NO_CONTINUATION, 'no admissible continuation: '//why//hint, error)
    end subroutine no_continuation
+
+   !> Error: the iteration of the linear solver failed, and no other solver can take over.
+   subroutine not_converged(self, error)
+      class(contact_path_type), intent(in) :: self
+      type(error_type), allocatable, intent(out) :: error
+
+      call self%end_here(MFV_NOT_CONVERGED, 'not converged: the iteration of the linear solver fails; use linear_solver='// &
+                         '''reduced'' in &solver', error)
+   end subroutine not_converged
 
    !> Error with the reason and the present load and contact.
    subroutine end_here(self, status, why, error)

@@ -99,7 +99,10 @@ contains
          call constrain(path, segment, done, expected, constraints, error)
          if (allocated(error)) return
          call path%system%solve(path%model, constraints, path%state%fields, response, singular)
-         if (singular) then
+         if (singular .and. path%system%gave_up) then
+            call path%not_converged(error)
+            return
+         else if (singular) then
             call path%end_here(MFV_INADMISSIBLE, 'inadmissible: the linear system is singular', error)
             return
          end if

@@ -185,7 +185,7 @@ contains
    end function last_step
 
    !> Check that the increment was found. If `found` is false, stress drops have begun and the increment is to be found again.
-   !> Error MFV_NO_CONTINUATION.
+   !> Errors MFV_NO_CONTINUATION, MFV_NOT_CONVERGED.
    subroutine look_for_solution(path, progress, found, error)
       class(contact_path_type), intent(inout) :: path
       type(progress_type), intent(inout) :: progress
@@ -195,7 +195,10 @@ contains
 
       found = .not. (progress%increment%singular .or. progress%increment%diverges)
       if (found) return
-      if (progress%increment%singular) then
+      if (progress%increment%singular .and. path%system%gave_up) then
+         call path%not_converged(error)
+         return
+      else if (progress%increment%singular) then
          call path%no_continuation('the linear system is singular', error)
          return
       end if
@@ -238,11 +241,11 @@ contains
                                    to_text(path%certificate%largest())//')', error)
    end subroutine advance
 
-   !> The largest admissible residual of the certificate. In large increments the linear solver may be less accurate.
+   !> The largest admissible residual of the certificate.
    pure real(wp) function most_residual(path)
       class(contact_path_type), intent(in) :: path
 
-      most_residual = max(failed_certificate, tolerance_factor*path%system%tolerance, path%model%scene%method%allowed_residual())
+      most_residual = max(failed_certificate, tolerance_factor*path%system%tolerance)
    end function most_residual
 
    !> Change the statuses of the nodes whose inequalities are violated first, together.

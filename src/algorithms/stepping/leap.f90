@@ -266,11 +266,11 @@ contains
       chain%work_error = chain%node_wise_error
    end subroutine prefer_node_wise
 
-   !> Allow errors of iterative solvers that are negligible beside that of a chain: of the rates, only signs and corrections of
-   !> slips are used. Without coupling this would save nothing: the preconditioner is exact.
+   !> Allow errors of iterative solvers that are negligible beside that of a chain and in the certificate: of the rates, only signs
+   !> and corrections of slips are used. Without coupling this would save nothing: the preconditioner is exact.
    subroutine allow_errors(path)
       class(contact_path_type), intent(inout) :: path
-      real(wp), parameter :: negligible = 1.0e-5_wp, most = 1.0e-7_wp, in_rates = 1.0e-2_wp, most_in_rates = 1.0e-4_wp
+      real(wp), parameter :: negligible = 1.0e-6_wp, most = 1.0e-9_wp, in_rates = 1.0e-2_wp, most_in_rates = 1.0e-4_wp
 
       if (.not. (path%model%compliance%has_block(block_up) .and. path%model%compliance%has_block(block_wt))) return
       associate (accuracy => path%model%scene%method%accuracy)

@@ -25,7 +25,7 @@ module mfv_simulation
    use mfv_scene
    use mfv_slip_zones, only: segment_start_type, slip_record_type
    use mfv_state_interior, only: find_largest_tension, find_largest_von_mises, surface_stress_at
-   use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, MFV_INTERRUPTED
+   use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, MFV_INTERRUPTED, MFV_NO_CONTINUATION, MFV_SEPARATED
    use mfv_stress_search, only: largest_type
    use mfv_straight, only: apply_directly
    use mfv_wear_block, only: find_wear_block, wear_block_type, work_of_wear
@@ -693,13 +693,31 @@ contains
       type(error_type), intent(in) :: error
 
       self%outcome = error%status
-      self%message = error%message
+      self%message = error%message//hint_of_datum(self)
       if (allocated(step%path)) self%message = 'row '//to_text(step%row + mod(self%leg%number - 1, step%turns()))//', cycle '// &
-                                               to_text(1 + (self%leg%number - 1)/step%turns())//': '//error%message
+                                               to_text(1 + (self%leg%number - 1)/step%turns())//': '//self%message
       self%leg%number = 0
       self%failed_step = self%steps_done + 1
       call note_history_checksum(self, step)
    end subroutine end_step_early
+
+   !> A prescribed approach ends where the contact is wider than its datum: the compliance of a flat contact of the half-width a is
+   !> proportional to ln(2 d/a), and where it vanishes, the contact grows without approach.
+   pure function hint_of_datum(self) result(hint)
+      class(simulation_type), intent(in) :: self
+      character(:), allocatable :: hint
+      real(wp) :: half_width
+
+      hint = ''
+      associate (scene => self%contact%model%scene)
+         if (self%outcome /= MFV_NO_CONTINUATION .and. self%outcome /= MFV_SEPARATED) return
+         if (self%leg%segment%load(motion_approach)%control /= control_displacement .or. .not. scene%has_datum()) return
+         half_width = self%contact%half_width() + 0.5_wp*self%contact%model%interval()
+         if (half_width > most_of_datum*scene%datum()) &
+            hint = '; the contact half-width of '//to_text(half_width, 3)//' exceeds the datum '//to_text(scene%datum(), 3)// &
+                   ', which ends the approach: set a larger datum in &body, or prescribe normal_force'
+      end associate
+   end function hint_of_datum
 
    !> Add a completed step to the checksum of the load history: its controls and targets, and its final state.
    subroutine note_history_checksum(self, step)
