@@ -693,7 +693,7 @@ contains
       type(error_type), intent(in) :: error
 
       self%outcome = error%status
-      self%message = error%message//hint_of_datum(self)
+      self%message = error%message//trim(hint_of_datum(self))
       if (allocated(step%path)) self%message = 'row '//to_text(step%row + mod(self%leg%number - 1, step%turns()))//', cycle '// &
                                                to_text(1 + (self%leg%number - 1)/step%turns())//': '//self%message
       self%leg%number = 0
@@ -705,7 +705,7 @@ contains
    !> proportional to ln(2 d/a), and where it vanishes, the contact grows without approach.
    pure function hint_of_datum(self) result(hint)
       class(simulation_type), intent(in) :: self
-      character(:), allocatable :: hint
+      character(len=200) :: hint
       real(wp) :: half_width
 
       hint = ''
