@@ -82,8 +82,11 @@ contains
       real(wp), intent(in), optional :: x, y
 
       if (self%row > 0) then
-         if (value <= self%value - round_off*abs(self%value) .or. ieee_is_nan(self%value)) return
-         if (value <= self%value + round_off*abs(self%value) .and. row > self%row) return
+         if (ieee_is_nan(self%value)) return
+         if (.not. ieee_is_nan(value)) then
+            if (value <= self%value - round_off*abs(self%value)) return
+            if (value <= self%value + round_off*abs(self%value) .and. row > self%row) return
+         end if
       end if
       self%value = value
       self%row = row

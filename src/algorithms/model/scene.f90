@@ -1,7 +1,7 @@
 !> A scene: bodies, mesh, friction, load history and method. No files, no solution.
 module mfv_scene
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use mfv_body, only: body_type, shape_matrix
+   use mfv_body, only: body_type, shape_matrix, shape_profile
    use mfv_compliance, only: coupling_full
    use mfv_friction, only: friction_type
    use mfv_interior, only: has_interior, interior_type, new_interior
@@ -218,11 +218,13 @@ contains
       real(wp) :: half_width, pressure, usual, interval
 
       nodes = 0
+      if (all([self%lower%shape, self%upper%shape] /= shape_profile)) return
       half_width = min(self%lower%half_extent(), self%upper%half_extent())
       if (self%mesh%half_width > 0.0_wp) half_width = min(half_width, self%mesh%half_width)
       if (.not. allocated(self%steps) .or. .not. self%modulus() > 0.0_wp .or. half_width >= huge(1.0_wp)) return
-      pressure = 0.5_wp/half_width*max(maxval(self%steps%extreme(motion_approach, control_force)), &
-                                       self%modulus()*maxval(self%steps%extreme(motion_approach, control_displacement)))
+      if (size(self%steps) == 0) return
+      pressure = 0.5_wp/half_width*max(maxval(self%steps%extreme(motion_approach, control_force)), 0.0_wp, &
+                                      self%modulus()*max(maxval(self%steps%extreme(motion_approach, control_displacement)), 0.0_wp))
       if (.not. pressure > 0.0_wp) return
       usual = 2.0_wp*half_width/usual_nodes
       interval = min(sufficient_interval(self%lower, self%modulus(), pressure, usual), &

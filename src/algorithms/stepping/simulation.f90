@@ -1,6 +1,6 @@
 !> A scene and its run through the load history: steps, reversals, the state at the end of each, and the outcome.
 module mfv_simulation
-   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only: int64, int8
    use mfv_checksum, only: add_to_checksum
    use mfv_contact_model, only: new_contact_model
@@ -930,7 +930,10 @@ contains
          do number = 1, count(is_left)
             i = maxloc(estimates, dim=1, mask=is_left)
             is_left(i) = .false.
-            if (found%row > 0 .and. estimates(i) < least*found%value) exit
+            if (found%row > 0) then
+               if (ieee_is_nan(found%value)) exit
+               if (estimates(i) < least*found%value) exit
+            end if
             call find_largest(self%padded(self%marks(first + i - 1)))
             if (.not. available) exit
             call found%raise(largest%value, extremes%row(i, candidate), largest%x, largest%y)

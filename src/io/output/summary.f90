@@ -179,6 +179,8 @@ contains
          largest = field_named(fields, 'largest_'//name)
          last = max(field_named(fields, name), field_named(fields, 'peak_'//name))
          is_above_end = largest > 0 .and. last > 0
+         ! NaN: singular.
+         if (is_above_end) is_above_end = ieee_is_finite(fields(largest)%values(1)) .and. ieee_is_finite(fields(last)%values(1))
          if (is_above_end) is_above_end = fields(largest)%values(1) > (1.0_wp + round_off)*fields(last)%values(1)
       end function is_above_end
 
