@@ -150,12 +150,14 @@ contains
    !> x of the largest value at the nodes: the middle of neighbouring nodes with the same value.
    pure real(wp) function place_of_largest(x, values) result(place)
       real(wp), intent(in) :: x(:), values(:)
+      real(wp) :: least
       integer :: first, last
 
-      first = findloc(values >= (1.0_wp - round_off)*maxval(values), .true., dim=1)
+      least = maxval(values) - round_off*abs(maxval(values))
+      first = findloc(values >= least, .true., dim=1)
       last = first
       do while (last < size(x))
-         if (.not. values(last + 1) >= (1.0_wp - round_off)*maxval(values)) exit
+         if (values(last + 1) < least) exit
          last = last + 1
       end do
       place = 0.5_wp*(x(first) + x(last))
