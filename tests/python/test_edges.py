@@ -79,11 +79,13 @@ def test_tension_of_a_wedge_is_independent_of_parity() -> None:
 
 @pytest.mark.parametrize("mesh", ["", ", refine='edges'"])
 def test_peak_pressure_of_a_wedge_has_no_limit(mesh: str) -> None:
+    """Neither has the tension a bar where a warning says that a slip zone is too narrow for it."""
     random = np.random.default_rng(3)
     for nodes in (101, 102, 150):
-        bars = mfv.run(text=WEDGE.format(nodes=nodes, mesh=mesh, bars=".true.", **wedge(random))).error_estimate
+        result = mfv.run(text=WEDGE.format(nodes=nodes, mesh=mesh, bars=".true.", **wedge(random)))
+        bars = result.error_estimate
         assert bars.peak_pressure_error == math.inf and bars.peak_pressure_order == 0.0
-        assert math.isfinite(bars.lower_tension_error)
+        assert math.isfinite(bars.lower_tension_error) != ("lower_tension" in result.attributes["warnings"])
 
 
 ROUND_OFF = """
