@@ -3,9 +3,9 @@
 module test_closed_form_cases
    use mfv_body, only: new_disk
    use mfv_compliance, only: coupling_goodman
-   use mfv_error_bar
    use mfv_kinds, only: pi, wp
    use mfv_material, only: new_material, plane_strain
+   use mfv_observables
    use mfv_reference_hertz
    use mfv_reference_mindlin
    use mfv_reference_spence
@@ -24,7 +24,7 @@ contains
    subroutine random_case(number, i, scene, truth)
       integer, intent(in) :: number, i
       type(scene_type), intent(out) :: scene
-      real(wp), intent(out) :: truth(quantity_count)
+      real(wp), intent(out) :: truth(observable_count)
       real(wp) :: u(8), mu, force, length, modulus, half_width, shear_force, normal_force
 
       u = random_numbers(100000*number + 100*i, size(u))
@@ -51,31 +51,31 @@ contains
          scene%upper = new_disk(length*radius)
          half_width = hertz_half_width(normal_force, length*radius, scene%modulus())
          scene%mesh%half_width = half_width*(1.1_wp + 0.3_wp*u(8))
-         truth(quantity_peak_pressure) = 2.0_wp*normal_force/(pi*half_width)
+         truth(place_peak_pressure) = 2.0_wp*normal_force/(pi*half_width)
       end if
-      if (modulo(i, kinds) /= kind_punch) truth(quantity_half_width) = half_width
+      if (modulo(i, kinds) /= kind_punch) truth(place_half_width) = half_width
       force = normal_force
       select case (modulo(i, kinds))
       case (kind_hertz)
          call press(scene, force, .false.)
       case (kind_punch)
          call press(scene, force, .true.)
-         truth(quantity_stick_ratio) = spence_stick_ratio(mu, scene%dundurs_beta())
+         truth(place_stick_ratio) = spence_stick_ratio(mu, scene%dundurs_beta())
       case (kind_cycle, kind_mindlin)
          call press(scene, force, .false.)
          call shear(scene, shear_force)
          if (modulo(i, kinds) == kind_cycle) call shear(scene, -shear_force, cycles=1)
-         truth(quantity_stick_ratio) = mindlin_stick_ratio(shear_force, force, mu)
-         truth(quantity_peak_shear) = mu*truth(quantity_peak_pressure)*sqrt(shear_force/(mu*force))
-         truth(quantity_dissipation) = mindlin_dissipation(shear_force, force, half_width, length*radius, mu) &
+         truth(place_stick_ratio) = mindlin_stick_ratio(shear_force, force, mu)
+         truth(place_peak_shear) = mu*truth(place_peak_pressure)*sqrt(shear_force/(mu*force))
+         truth(place_dissipation) = mindlin_dissipation(shear_force, force, half_width, length*radius, mu) &
                                        *merge(1.25_wp, 0.25_wp, modulo(i, kinds) == kind_cycle)
          ! The sum of both shear tractions of Mindlin behind the contact: 2 mu p0 (x - sqrt(x^2 - a^2))/a of each (Johnson 1985,
          ! section 7.1), at x = a.
-         truth(quantity_lower_tension) = 2.0_wp*truth(quantity_peak_shear)
+         truth(place_lower_tension) = 2.0_wp*truth(place_peak_shear)
       case default
          call press(scene, force, .true.)
-         truth(quantity_stick_ratio) = spence_stick_ratio(mu, scene%dundurs_beta())
-         truth(quantity_peak_shear) = largest_spence_shear(force, half_width, mu, scene%dundurs_beta())
+         truth(place_stick_ratio) = spence_stick_ratio(mu, scene%dundurs_beta())
+         truth(place_peak_shear) = largest_spence_shear(force, half_width, mu, scene%dundurs_beta())
       end select
 
    contains

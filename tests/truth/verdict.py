@@ -73,31 +73,30 @@ FLAGS = [
     (r"of the worn area is from cycles", r"worn_area|wear_depth"),
     (r"datum of the displacements|exceeds the datum", _MOTIONS),
 ]
-#: Positions have the bars of the half-width and, of stick zones, of the stick ratio times the length of the contact.
-_POSITION = r"contact_(left|right|centre.*)|(lower|upper)_tension_x"
+#: Positions have the bars of the length and, of stick zones, of the stick ratio times the length of the contact.
+_POSITION = r"contact_(left|right)"
 _STICK_POSITION = r"stick_(left|right|length)"
-#: Bars of /error_estimate that belong to a quantity: the error of a product has those of its factors.
-BARS_OF = {
-    "contact_half_width": ("contact_half_width",),
-    "edge_half_width": ("contact_half_width",),
-    "contact_length": ("contact_half_width",),
-    "half_width_number": ("contact_half_width",),
-    "stick_ratio": ("stick_ratio",),
-    "edge_stick_ratio": ("stick_ratio",),
-    "peak_pressure": ("peak_pressure",),
-    "pressure_number": ("peak_pressure", "contact_half_width"),
-    "peak_shear": ("peak_shear",),
-    "shear_number": ("peak_shear", "contact_half_width"),
-    "dissipation": ("dissipation",),
-    "lower_tension": ("lower_tension",),
-    "upper_tension": ("upper_tension",),
-    "cycle_dissipation": ("cycle_dissipation",),
-    "dissipation_number": ("cycle_dissipation",),
-    "tangential_stiffness": ("tangential_stiffness",),
-    "stiffness_number": ("tangential_stiffness",),
-    "secant_stiffness": ("secant_stiffness",),
-    "loss_factor": ("loss_factor",),
+#: Quantities that are equal to an observable of another name.
+EQUAL = {
+    "edge_stick_ratio": "stick_ratio",
+    "stick_ratio_lowest": "smallest_stick_ratio",
+    "stick_ratio_highest": "largest_stick_ratio",
+    "shift_force_work": "cycle_dissipation",
 }
+#: Observables whose relative bars add up to that of a quantity.
+FACTORS = {
+    "edge_half_width": ("contact_length",),
+    "half_width_number": ("contact_half_width",),
+    "pressure_number": ("peak_pressure", "contact_half_width"),
+    "shear_number": ("peak_shear", "contact_half_width"),
+    "dissipation_number": ("cycle_dissipation", "normal_force"),
+    "stiffness_number": ("tangential_stiffness",),
+    "shift_number": ("shift_amplitude",),
+    "force_number": ("force_amplitude", "normal_force"),
+    "creepage_number": ("creepage", "contact_half_width"),
+}
+#: Without a bar where they are prescribed, and exact.
+PRESCRIBED = {"normal_force", "force_amplitude"}
 
 
 class Verdict(NamedTuple):
@@ -224,28 +223,38 @@ def bar_of(base: mfv.Result, path: str, value: float) -> float:
     """Bar of a quantity with a value: NaN without one; infinite where MFV says that there is no limit or that it is not resolved,
     or why there is no bar at all."""
     group, name = path.split("/")
-    if re.fullmatch(f"{_POSITION}|{_STICK_POSITION}", name) and group != "cycles":
-        return _bar_of_position(base, name)
-    names = BARS_OF.get(public_name(path), ())
     several = group == "patches" and len(base.patches.patch) > 1
-    if not names or several or path in COUNTED:
+    if several or path in COUNTED:
         return math.nan
+    if str(base.attributes.get("error_estimate", "")).startswith("none"):
+        return math.inf
+    if re.fullmatch(r"contact_centre_(reversal|return)", name):
+        shift = name.replace("contact_centre", "patch_shift")
+        return bar_of(base, f"observables/{shift}", math.nan) * 0.5 * float(base.observables.contact_length)
+    if re.fullmatch(f"{_POSITION}|{_STICK_POSITION}", name):
+        return _bar_of_position(base, name)
+    factors = FACTORS.get(name)
+    if not factors:
+        return _error_of(base, EQUAL.get(name, public_name(path)))
     relative = 0.0
-    for one in names:
-        if f"{one}_error" not in base.error_estimate:
-            return math.inf if str(base.attributes.get("error_estimate", "")).startswith("none") else math.nan
-        error, of = float(base.error_estimate[f"{one}_error"]), abs(float(base.error_estimate[one]))
-        if not math.isfinite(error):
-            return math.inf
-        if one == name and group == "observables":
-            return error
-        relative += error / of if of > 0.0 else 0.0
+    for factor in factors:
+        error, of = _error_of(base, factor), abs(float(base.observables[factor]))
+        if not (math.isnan(error) and factor in PRESCRIBED):
+            relative += error / of if of > 0.0 else 0.0
     return relative * abs(value)
 
 
+def _error_of(base: mfv.Result, observable: str) -> float:
+    """Bar of an observable: NaN without one, infinite where it has no limit or is not resolved."""
+    if f"{observable}_error" not in base.error_estimate:
+        return math.nan
+    error = float(base.error_estimate[f"{observable}_error"])
+    return error if math.isfinite(error) else math.inf
+
+
 def _bar_of_position(base: mfv.Result, name: str) -> float:
-    """Both edges may be in error by the bar of the half-width, in opposite directions."""
-    bar = 2.0 * bar_of(base, "observables/contact_half_width", 1.0)
+    """Both edges may be in error by the bar of the length, in opposite directions."""
+    bar = bar_of(base, "observables/contact_length", 1.0)
     if re.fullmatch(_STICK_POSITION, name):
         bar += bar_of(base, "observables/stick_ratio", 1.0) * float(base.summary.contact_length)
     return bar

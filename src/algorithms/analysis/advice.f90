@@ -4,9 +4,9 @@
 !> (mfv_slip_zones), and edges are uncertain by a part of an interval. Solver costs follow from laws with measured constants.
 module mfv_advice
    use mfv_discretisation_error
-   use mfv_error_bar, only: quantity_count, quantity_half_width, quantity_stick_ratio
    use mfv_kinds, only: wp
    use mfv_node_status, only: in_contact
+   use mfv_observables, only: error_edges, error_place, error_stick
    use mfv_observer, only: observer_type, relay_type
    use mfv_profile_sampling, only: negligible_pressure
    use mfv_resolution, only: poorest_patch, undersampling
@@ -365,16 +365,16 @@ contains
    subroutine add_interval_laws(law, fine)
       type(law_type), intent(inout) :: law
       type(simulation_type), intent(in) :: fine
-      real(wp) :: allowances(quantity_count)
+      real(wp) :: allowances(0:error_place)
       type(zone_edges_type) :: edges
       integer :: nodes
 
-      allowances = interval_allowances(fine)
+      allowances = allowances_of_behaviours(fine)
       call find_zone_edges(fine%contact%model, fine%contact%state, edges)
       nodes = fine%contact%state%contact_nodes()
       associate (half_width => law%squares(advice_half_width), stick_ratio => law%squares(advice_stick_ratio))
-         half_width = max(half_width, (nodes*allowances(quantity_half_width)/max(0.5_wp*edges%contact_length, tiny(1.0_wp)))**2)
-         stick_ratio = max(stick_ratio, (nodes*allowances(quantity_stick_ratio))**2)
+         half_width = max(half_width, (nodes*allowances(error_edges)/max(0.5_wp*edges%contact_length, tiny(1.0_wp)))**2)
+         stick_ratio = max(stick_ratio, (nodes*allowances(error_stick))**2)
       end associate
    end subroutine add_interval_laws
 

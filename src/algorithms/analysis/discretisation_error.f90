@@ -1,5 +1,5 @@
-!> Discretisation error of a result: the scene is solved again on coarser meshes; half-width and stick ratio between nodes,
-!> peak tractions, dissipation, the largest tensions, and the loop of the last cycle get error bars (mfv_error_bar).
+!> Discretisation error of a result: the scene is solved again on coarser meshes, and the observables get error bars
+!> (mfv_error_bar).
 module mfv_discretisation_error
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use mfv_body, only: body_type, shape_matrix
@@ -13,7 +13,7 @@ module mfv_discretisation_error
    use mfv_kinds, only: pi, wp
    use mfv_motions, only: control_keep, motion_approach, motion_shift
    use mfv_node_status, only: holds, in_contact
-   use mfv_observables, only: observable_count, observable_place, observables_of
+   use mfv_observables
    use mfv_observer, only: observer_type, relay_type
    use mfv_profile_sampling, only: negligible_pressure
    use mfv_resolution, only: add_unresolved, all_quantities, find_unresolved, is_unresolved, undersampling, unresolved_type
@@ -21,11 +21,10 @@ module mfv_discretisation_error
    use mfv_simulation, only: history_none, new_simulation, simulation_type, states_steps
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
-   use mfv_zone_edges, only: find_patches, largest_shear, patch_type, zones_of
+   use mfv_zone_edges, only: find_patches, find_zone_edges, largest_shear, patch_type, zone_edges_type, zones_of
    implicit none
    private
-   public :: estimate_error, coarser_scene, scene_on_mesh, fix_cycles, nearest_mesh, quantity_names, interval_allowances, &
-             has_coarser_meshes
+   public :: estimate_error, coarser_scene, scene_on_mesh, fix_cycles, nearest_mesh, allowances_of_behaviours, has_coarser_meshes
 
    !> Ratios of fine to coarse numbers of intervals: spread, so that edges lie in different places of an interval.
    real(wp), parameter :: coarsening(3) = [1.4_wp, 1.7_wp, 2.0_wp]
@@ -34,12 +33,6 @@ module mfv_discretisation_error
    !> Factor on the bars of unequal intervals, whose coarser meshes differ less from them than their errors do: measured
    !> (docs/verification.md).
    real(wp), parameter :: of_unequal_intervals = 4.0_wp
-   !> The observables that get error bars, in the order of the quantities. Of several patches the half-width is half their
-   !> total length.
-   character(*), parameter :: quantity_names(quantity_count) = &
-                              [character(20) :: 'contact_half_width', 'stick_ratio', 'peak_pressure', 'peak_shear', 'dissipation', &
-                                                 'lower_tension', 'upper_tension', 'cycle_dissipation', 'tangential_stiffness', &
-                                                 'secant_stiffness', 'loss_factor']
 
 contains
 
@@ -58,73 +51,79 @@ contains
       type(error_estimate_type) :: estimate
       real(wp), allocatable :: values(:, :), allowances(:, :)
       integer, allocatable :: nodes(:)
-      integer, parameter :: by_edges(4) = [quantity_half_width, quantity_stick_ratio, quantity_lower_tension, &
-                                           quantity_upper_tension]
       type(unresolved_type), allocatable :: unresolved(:)
-      integer :: quantity
+      integer :: place
 
       estimate%nodes = simulation%contact%model%scene%mesh%nodes
       estimate%message = ''
       estimate%doubt = ''
-      allocate (estimate%coarser_nodes(0))
+      allocate (estimate%coarser_nodes(0), estimate%bar(observable_count))
       call choose_coarser_meshes(simulation, nodes, estimate)
       if (estimate%message == '') call find_unresolved(simulation, unresolved)
       if (estimate%message == '') call solve_coarser_meshes(simulation, nodes, values, allowances, unresolved, estimate, observer)
       if (estimate%message == '') then
          estimate%coarser_nodes = nodes(2:)
-         do quantity = 1, quantity_count
-            if (any(ieee_is_nan(values(quantity, :)))) cycle
-            if (.not. is_unresolved(unresolved, trim(quantity_names(quantity)))) then
-               if (.not. is_there(simulation%contact%model, quantity, values(quantity, :))) cycle
-               estimate%bar(quantity) = new_error_bar(nodes, values(quantity, :), allowances(quantity, :), &
-                                                      any(quantity == by_edges), &
-                                                      all(quantity /= [quantity_peak_pressure, quantity_peak_shear, &
-                                                                       quantity_lower_tension, quantity_upper_tension]))
+         do place = 1, observable_count
+            if (observables(place)%error == error_none .or. any(ieee_is_nan(values(place, :)))) cycle
+            if (is_unresolved(unresolved, trim(observables(place)%name))) then
+               estimate%bar(place) = unresolved_bar(values(place, :))
+            else if (is_there(simulation%contact%model, place, values(place, :))) then
+               associate (behaviour => observables(place)%error)
+                  estimate%bar(place) = new_error_bar(nodes, values(place, :), allowances(place, :), &
+                                                      any(behaviour == [error_edges, error_stick, error_tension, error_place]), &
+                                                      all(behaviour /= [error_pressure, error_shear, error_tension]))
+               end associate
                if (allocated(simulation%contact%model%scene%mesh%ends)) &
-                  estimate%bar(quantity)%error = of_unequal_intervals*estimate%bar(quantity)%error
-            else
-               estimate%bar(quantity) = unresolved_bar(values(quantity, :))
+                  estimate%bar(place)%error = of_unequal_intervals*estimate%bar(place)%error
             end if
-            if (peak_is_at_corner(simulation, quantity)) estimate%bar(quantity) = logarithmic_bar(values(quantity, :))
+            if (peak_is_at_corner(simulation, place, values(:, 1))) estimate%bar(place) = logarithmic_bar(values(place, :))
          end do
       end if
       simulation%estimate = estimate
    end subroutine estimate_error
 
    !> Whether a peak is at a corner, where it grows whenever intervals are halved, and how it changes from mesh to mesh depends more
-   !> on where the corner lies between nodes: the peak pressure, and the peak shear at a corner that has slipped.
-   pure logical function peak_is_at_corner(simulation, quantity)
+   !> on where the corner lies between nodes: peaks of the pressure, and of the shear at a corner that has slipped. `values`: of
+   !> all observables.
+   pure logical function peak_is_at_corner(simulation, place, values)
       type(simulation_type), intent(in) :: simulation
-      integer, intent(in) :: quantity
+      integer, intent(in) :: place
+      real(wp), intent(in) :: values(:)
       type(corner_type) :: corner
       integer :: peak
 
-      associate (model => simulation%contact%model, state => simulation%contact%state)
-         select case (quantity)
-         case (quantity_peak_pressure)
+      peak_is_at_corner = .false.
+      associate (model => simulation%contact%model, state => simulation%contact%state, name => observables(place)%name, &
+                 behaviour => observables(place)%error)
+         if (all(behaviour /= [error_pressure, error_shear])) return
+         if (index(name, 'largest_') == 1) then
+            peak = minloc(abs(model%x - values(observable_place(trim(name)//'_x'))), dim=1)
+         else if (behaviour == error_pressure) then
             peak = maxloc(state%fields%pressure, dim=1)
-            call find_corner(model, state%fields%pressure, peak, corner, peak_is_at_corner)
-         case (quantity_peak_shear)
+         else
             peak = maxloc(abs(state%fields%shear), dim=1)
-            call find_corner(model, state%fields%pressure, peak, corner, peak_is_at_corner)
-            peak_is_at_corner = peak_is_at_corner .and. state%friction_work(peak) > 0.0_wp
-         case default
-            peak_is_at_corner = .false.
-         end select
+         end if
+         call find_corner(model, state%fields%pressure, peak, corner, peak_is_at_corner)
+         if (behaviour == error_shear) peak_is_at_corner = peak_is_at_corner .and. state%friction_work(peak) > 0.0_wp
       end associate
    end function peak_is_at_corner
 
-   !> Whether a quantity is modelled and is not zero on all meshes.
-   pure logical function is_there(model, quantity, values)
+   !> Whether an observable is modelled, is not prescribed, and is not zero on all meshes.
+   pure logical function is_there(model, place, values)
       type(contact_model_type), intent(in) :: model
-      integer, intent(in) :: quantity
+      integer, intent(in) :: place
       real(wp), intent(in) :: values(:)
+      !> Relative difference of a prescribed load on two meshes.
+      real(wp), parameter :: round_off = 1.0e-10_wp
 
-      is_there = .true.
-      if (any(quantity == [quantity_stick_ratio, quantity_peak_shear, quantity_dissipation])) &
+      select case (observables(place)%error)
+      case (error_stick)
          is_there = model%tangential
-      if (quantity == quantity_stick_ratio) return
-      is_there = is_there .and. any(abs(values) > 0.0_wp)
+      case (error_load)
+         is_there = maxval(abs(values - values(1))) > round_off*maxval(abs(values))
+      case default
+         is_there = any(abs(values) > 0.0_wp)
+      end select
    end function is_there
 
    !> Numbers of intervals of the mesh and of different coarser meshes; or, in `estimate`, why there are none.
@@ -194,7 +193,7 @@ contains
       fits = abs(intervals - anint(intervals)) <= whole*intervals
    end function fits
 
-   !> Solve the scene on the coarser meshes. `values`, `allowances`: every quantity on every mesh, shape (quantity_count,
+   !> Solve the scene on the coarser meshes. `values`, `allowances`: every quantity on every mesh, shape (observable_count,
    !> size(nodes)). `unresolved`: nothing can be estimated from a mesh that misses contact patches, or points of a profile.
    subroutine solve_coarser_meshes(simulation, nodes, values, allowances, unresolved, estimate, observer)
       type(simulation_type), intent(in) :: simulation
@@ -207,9 +206,9 @@ contains
       type(simulation_type) :: coarse
       integer :: i
 
-      allocate (values(quantity_count, size(nodes)), allowances(quantity_count, size(nodes)))
-      values(:, 1) = quantities_of(simulation)
-      allowances(:, 1) = interval_allowances(simulation)
+      allocate (values(observable_count, size(nodes)), allowances(observable_count, size(nodes)))
+      call observables_of(simulation, values(:, 1))
+      allowances(:, 1) = interval_allowances(simulation, values(:, 1))
       if (present(observer)) watch%caller => observer
       watch%runs = size(nodes) - 1
       do i = 2, size(nodes)
@@ -221,8 +220,8 @@ contains
             estimate%message = 'on a mesh of '//to_text(nodes(i))//' nodes: '//status_outcome(coarse%outcome)
             return
          end if
-         values(:, i) = quantities_of(coarse)
-         allowances(:, i) = interval_allowances(coarse)
+         call observables_of(coarse, values(:, i))
+         allowances(:, i) = interval_allowances(coarse, values(:, i))
          if (estimate%doubt == '') estimate%doubt = trim(difference_of_meshes(simulation, coarse))
       end do
       if (estimate%doubt == '') return
@@ -340,22 +339,34 @@ contains
       coefficient%value = means
    end subroutine average
 
-   !> The quantities at the present state of a simulation, with units as observables; NaN if not available.
-   function quantities_of(simulation) result(values)
+   !> Uncertainty of each observable within an interval, shape (observable_count); of places the interval there. Those of turning
+   !> points are as large as those of the present state. `values`: of the observables.
+   function interval_allowances(simulation, values) result(allowances)
       type(simulation_type), intent(in) :: simulation
-      real(wp) :: values(quantity_count)
-      real(wp) :: all_values(observable_count)
-      integer :: quantity
+      real(wp), intent(in) :: values(:)
+      real(wp) :: allowances(observable_count), of_behaviour(0:error_place)
+      type(zone_edges_type) :: edges
+      integer :: i
 
-      call observables_of(simulation, all_values, without_von_mises=.true.)
-      values = [(all_values(observable_place(quantity_names(quantity))), quantity=1, quantity_count)]
-      values(quantity_half_width) = 0.5_wp*all_values(observable_place('contact_length'))
-   end function quantities_of
+      of_behaviour = allowances_of_behaviours(simulation)
+      allowances = of_behaviour(observables%error)
+      associate (model => simulation%contact%model)
+         call find_zone_edges(model, simulation%contact%state, edges)
+         where (observables%error == error_edges .and. observables%unit == '1') &
+            allowances = 2.0_wp*allowances/max(edges%contact_length, model%interval())
+         where (observables%name == 'contact_length') allowances = 2.0_wp*allowances
+         do i = 1, observable_count
+            if (observables(i)%error == error_place .and. .not. ieee_is_nan(values(i))) &
+               allowances(i) = model%width(minloc(abs(model%x - values(i)), dim=1))
+         end do
+      end associate
+   end function interval_allowances
 
-   !> Uncertainty of each quantity within an interval: that of the edges of contact and stick zones, and that of cusps.
-   function interval_allowances(simulation) result(allowances)
+   !> Uncertainty within an interval of observables of each behaviour: that of the edges of contact and stick zones (the half-width,
+   !> the stick ratio), and that of cusps.
+   function allowances_of_behaviours(simulation) result(of_behaviour)
       type(simulation_type), intent(in) :: simulation
-      real(wp) :: allowances(quantity_count)
+      real(wp) :: of_behaviour(0:error_place)
       type(patch_type), allocatable :: patches(:)
       real(wp) :: contact, stick, length, largest, nodal
       integer :: i
@@ -369,21 +380,22 @@ contains
          if (any(holds(state%status))) &
             stick = sqrt(2.0_wp*sum([(sum(patches(i)%stick%left_error**2 + patches(i)%stick%right_error**2), i=1, size(patches))]))
          length = max(sum(patches%length()), model%interval())
-         allowances = 0.0_wp
-         allowances(quantity_half_width) = 0.5_wp*contact
-         allowances(quantity_stick_ratio) = norm2([stick, contact*state%stick_nodes()/max(state%contact_nodes(), 1)])/length
-         if (size(patches) == 0) return
-         nodal = maxval(abs(state%fields%shear))
-         largest = maxval([(largest_shear(model, state, patches(i)), i=1, size(patches))])
-         if (model%compliance%has_block(block_wt)) then
-            allowances(quantity_peak_pressure) = room_at_cusp(state%fields%pressure, holds(state%status))
-            ! The pressure at the edge of a stick zone, which limits the shear there, is interpolated across a cusp.
-            if (pressing_shears(model)) allowances(quantity_peak_shear) = largest - nodal
+         of_behaviour = 0.0_wp
+         of_behaviour(error_edges) = 0.5_wp*contact
+         of_behaviour(error_stick) = norm2([stick, contact*state%stick_nodes()/max(state%contact_nodes(), 1)])/length
+         if (size(patches) > 0) then
+            nodal = maxval(abs(state%fields%shear))
+            largest = maxval([(largest_shear(model, state, patches(i)), i=1, size(patches))])
+            if (model%compliance%has_block(block_wt)) then
+               of_behaviour(error_pressure) = room_at_cusp(state%fields%pressure, holds(state%status))
+               ! The pressure at the edge of a stick zone, which limits the shear there, is interpolated across a cusp.
+               if (pressing_shears(model)) of_behaviour(error_shear) = largest - nodal
+            end if
+            if (.not. largest > nodal) &
+               of_behaviour(error_shear) = room_at_kink(abs(state%fields%shear), holds(state%status))
          end if
-         if (.not. largest > nodal) &
-            allowances(quantity_peak_shear) = room_at_kink(abs(state%fields%shear), holds(state%status))
       end associate
-   end function interval_allowances
+   end function allowances_of_behaviours
 
    !> Larger uncertainties of edges where the exponents of the tractions are less certain (docs/verification.md): of contact with
    !> full coupling, where they depend on the friction, and of stick zones that can have grown.

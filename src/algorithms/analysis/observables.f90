@@ -14,12 +14,23 @@ module mfv_observables
    use mfv_zone_edges, only: outermost_edges, find_patches, find_zone_edges, largest_shear, patch_type, zone_edges_type
    implicit none
    private
-   public :: observable_count, observables, observable_place, observables_of
+   public :: observable_count, observables, observable_place, observables_of, error_none, error_load, error_smooth, error_edges, &
+             error_stick, error_pressure, error_shear, error_tension, error_place
+   public :: place_half_width, place_stick_ratio, place_peak_pressure, place_peak_shear, place_dissipation, place_lower_tension, &
+             place_upper_tension, place_cycle_dissipation, place_secant_stiffness, place_loss_factor
 
-   !> Name, as in tables and files; unit in terms of length and force (energies per unit thickness), or 1; meaning.
+   !> How the discretisation error of an observable behaves: not estimated (counts, rows, and numbers with the relative errors of
+   !> their factors); none where the load is prescribed; smooth; that of edges of the contact, of stick zones, of the peaks of
+   !> the tractions, of a stress that can be at an edge; that of a place.
+   integer, parameter :: error_none = 0, error_load = 1, error_smooth = 2, error_edges = 3, error_stick = 4, error_pressure = 5, &
+                         error_shear = 6, error_tension = 7, error_place = 8
+
+   !> Name, as in tables and files; unit in terms of length and force (energies per unit thickness), or 1; behaviour of the
+   !> discretisation error; meaning.
    type :: row_type
       character(len=27) :: name
       character(len=14) :: unit
+      integer :: error
       character(len=130) :: meaning
    end type row_type
 
@@ -29,80 +40,126 @@ module mfv_observables
    !> Number and list of the observables.
    integer, parameter :: observable_count = 69
    type(row_type), parameter :: observables(observable_count) = [ &
-                                row_type('normal_force', 'force/length', 'normal force P per unit thickness at the end'), &
-                                row_type('tangential_force', 'force/length', 'tangential force Q per unit thickness at the end'), &
-                                row_type('approach', 'length', 'approach of the upper body at the end'), &
-                                row_type('shift', 'length', 'shift of the upper body to the right at the end'), &
-                       row_type('dissipation', 'force', 'energy dissipated so far per unit thickness (with wear: by all cycles)'), &
-                                row_type('contact_half_width', 'length', &
+                                row_type('normal_force', 'force/length', error_load, &
+                                         'normal force P per unit thickness at the end'), &
+                                row_type('tangential_force', 'force/length', error_load, &
+                                         'tangential force Q per unit thickness at the end'), &
+                                row_type('approach', 'length', error_smooth, 'approach of the upper body at the end'), &
+                                row_type('shift', 'length', error_smooth, 'shift of the upper body to the right at the end'), &
+                                row_type('dissipation', 'force', error_smooth, &
+                                         'energy dissipated so far per unit thickness (with wear: by all cycles)'), &
+                                row_type('contact_half_width', 'length', error_edges, &
                                     'half the length of the contact at the end, from edges between nodes, where it is one patch'), &
-           row_type('contact_length', 'length', 'length of the contact at the end, of all its patches, from edges between nodes'), &
-                                row_type('patches', '1', 'contact patches at the end, with open nodes between them'), &
-           row_type('contact_centre', 'length', 'middle between the outermost edges at the end, arc length from the origin of x'), &
-          row_type('stick_ratio', '1', 'length of the stick zones over that of the contact at the end, from edges between nodes'), &
-                                row_type('peak_pressure', 'force/length^2', 'largest pressure at the end'), &
-                                row_type('peak_shear', 'force/length^2', &
+                                row_type('contact_length', 'length', error_edges, &
+                                         'length of the contact at the end, of all its patches, from edges between nodes'), &
+                                row_type('patches', '1', error_none, &
+                                         'contact patches at the end, with open nodes between them'), &
+                                row_type('contact_centre', 'length', error_edges, &
+                                         'middle between the outermost edges at the end, arc length from the origin of x'), &
+                                row_type('stick_ratio', '1', error_stick, &
+                                       'length of the stick zones over that of the contact at the end, from edges between nodes'), &
+                                row_type('peak_pressure', 'force/length^2', error_pressure, 'largest pressure at the end'), &
+                                row_type('peak_shear', 'force/length^2', error_shear, &
                                          'largest size of the shear traction at the end, also at stick edges between nodes'), &
-                                row_type('cycles', '1', 'whole cycles of the last step that has any'), &
-                                row_type('cycle_dissipation', 'force', 'energy dissipated in the last cycle, per unit thickness'), &
-                         row_type('first_cycle_dissipation', 'force', 'energy dissipated in the first cycle, per unit thickness'), &
-              row_type('cycle_change', '1', 'largest change of a traction over the last cycle, relative to the largest traction'), &
-                   row_type('shift_drift', 'length', 'change of the shift over the last cycle: not 0 where the upper body walks'), &
-                          row_type('force_amplitude', 'force/length', 'half the range of the tangential force in the last cycle'), &
-                                row_type('shift_amplitude', 'length', 'half the range of the shift in the last cycle'), &
-                  row_type('tangential_stiffness', 'force/length^2', 'tangential force over shift right after the last reversal'), &
-                  row_type('secant_stiffness', 'force/length^2', 'tangential force over shift from end to end of the last cycle'), &
-                                row_type('loss_factor', '1', &
+                                row_type('cycles', '1', error_none, 'whole cycles of the last step that has any'), &
+                                row_type('cycle_dissipation', 'force', error_smooth, &
+                                         'energy dissipated in the last cycle, per unit thickness'), &
+                                row_type('first_cycle_dissipation', 'force', error_smooth, &
+                                         'energy dissipated in the first cycle, per unit thickness'), &
+                                row_type('cycle_change', '1', error_none, &
+                                         'largest change of a traction over the last cycle, relative to the largest traction'), &
+                                row_type('shift_drift', 'length', error_none, &
+                                         'change of the shift over the last cycle: not 0 where the upper body walks'), &
+                                row_type('force_amplitude', 'force/length', error_load, &
+                                         'half the range of the tangential force in the last cycle'), &
+                                row_type('shift_amplitude', 'length', error_smooth, &
+                                         'half the range of the shift in the last cycle'), &
+                                row_type('tangential_stiffness', 'force/length^2', error_smooth, &
+                                         'tangential force over shift right after the last reversal'), &
+                                row_type('secant_stiffness', 'force/length^2', error_smooth, &
+                                         'tangential force over shift from end to end of the last cycle'), &
+                                row_type('loss_factor', '1', error_smooth, &
                                  'area of the loop of tangential force and shift over 2 pi times the energy of secant_stiffness'), &
-                                row_type('stick_ratio_loading', '1', 'stick ratio where the cycles begin'), &
-                                row_type('stick_ratio_reversal', '1', 'stick ratio at the far end of the last cycle'), &
-                                row_type('stick_ratio_return', '1', 'stick ratio at the end of the last cycle'), &
-                         row_type('patch_shift_loading', '1', 'middle of the contact over its half-width where the cycles begin'), &
-              row_type('patch_shift_reversal', '1', 'middle of the contact over its half-width at the far end of the last cycle'), &
-                    row_type('patch_shift_return', '1', 'middle of the contact over its half-width at the end of the last cycle'), &
-                                row_type('half_width_number', '1', 'contact_half_width times the relative curvature'), &
-                     row_type('pressure_number', '1', 'peak_pressure over p0 = 2 P/(pi a), the peak of an ellipse (section 5.2)'), &
-                                row_type('shear_number', '1', 'peak_shear over p0 = 2 P/(pi a)'), &
-                               row_type('force_number', '1', 'force_amplitude over mu P: the lateral force ratio of section 6.4'), &
-                                row_type('shift_number', '1', 'shift_amplitude times the relative curvature (section 5.2)'), &
-                      row_type('dissipation_number', '1', 'cycle_dissipation over P^2 A, A = sum of (kappa + 1)/(4 G) (eq. 6.5)'), &
-                                row_type('stiffness_number', '1', 'tangential_stiffness times A'), &
-            row_type('creepage', '1', 'rolling: sliding of the upper body over the lower per rolled distance, both to the right'), &
-               row_type('creepage_number', '1', 'creepage over mu a K: K relative curvature, a contact_half_width (Carter 1926)'), &
-                    row_type('lower_tension', 'force/length^2', 'largest tension along the surface of the lower body at the end'), &
-                                row_type('lower_tension_x', 'length', 'where it is: x'), &
-                    row_type('upper_tension', 'force/length^2', 'largest tension along the surface of the upper body at the end'), &
-                                row_type('upper_tension_x', 'length', 'where it is: x'), &
-                                row_type('worn_area', 'length^2', 'area worn off both profiles: volume per unit thickness'), &
-                                row_type('wear_depth', 'length', 'largest depth worn off both surfaces together'), &
-                 row_type('largest_lower_tension', 'force/length^2', 'largest tension along the surface of the lower body'//over), &
-                                row_type('largest_lower_tension_x', 'length', 'where it is: x'), &
-                                row_type('largest_lower_tension_row', '1', row_meaning), &
-                 row_type('largest_upper_tension', 'force/length^2', 'largest tension along the surface of the upper body'//over), &
-                                row_type('largest_upper_tension_x', 'length', 'where it is: x'), &
-                                row_type('largest_upper_tension_row', '1', row_meaning), &
-                                row_type('largest_pressure', 'force/length^2', 'largest pressure'//over), &
-                                row_type('largest_pressure_x', 'length', 'where it is: x of a node'), &
-                                row_type('largest_pressure_row', '1', row_meaning), &
-                                row_type('largest_shear', 'force/length^2', 'largest size of the shear traction'//over), &
-                                row_type('largest_shear_x', 'length', 'where it is: x'), &
-                                row_type('largest_shear_row', '1', row_meaning), &
-               row_type('largest_slip_range', 'length', 'largest range of the slip of a node at turning points in contact'//over), &
-                                row_type('largest_slip_range_x', 'length', 'where it is: x'), &
-                                row_type('smallest_stick_ratio', '1', 'smallest stick ratio, as stick_ratio'//over), &
-                                row_type('smallest_stick_ratio_row', '1', row_meaning), &
-                                row_type('largest_stick_ratio', '1', 'largest stick ratio, as stick_ratio'//over), &
-                                row_type('largest_stick_ratio_row', '1', row_meaning), &
-                                row_type('largest_lower_von_mises', 'force/length^2', 'with yield_strength: largest von Mises '// &
-                                         'stress in the lower body'//over), &
-                                row_type('largest_lower_von_mises_x', 'length', 'where it is: x'), &
-                                row_type('largest_lower_von_mises_y', 'length', 'where it is: y'), &
-                                row_type('largest_lower_von_mises_row', '1', row_meaning), &
-                                row_type('largest_upper_von_mises', 'force/length^2', 'with yield_strength: largest von Mises '// &
-                                         'stress in the upper body'//over), &
-                                row_type('largest_upper_von_mises_x', 'length', 'where it is: x'), &
-                                row_type('largest_upper_von_mises_y', 'length', 'where it is: y'), &
-                                row_type('largest_upper_von_mises_row', '1', row_meaning)]
+                                row_type('stick_ratio_loading', '1', error_stick, 'stick ratio where the cycles begin'), &
+                                row_type('stick_ratio_reversal', '1', error_stick, &
+                                         'stick ratio at the far end of the last cycle'), &
+                                row_type('stick_ratio_return', '1', error_stick, 'stick ratio at the end of the last cycle'), &
+                                row_type('patch_shift_loading', '1', error_edges, &
+                                         'middle of the contact over its half-width where the cycles begin'), &
+                                row_type('patch_shift_reversal', '1', error_edges, &
+                                         'middle of the contact over its half-width at the far end of the last cycle'), &
+                                row_type('patch_shift_return', '1', error_edges, &
+                                         'middle of the contact over its half-width at the end of the last cycle'), &
+                                row_type('half_width_number', '1', error_none, &
+                                         'contact_half_width times the relative curvature'), &
+                                row_type('pressure_number', '1', error_none, &
+                                         'peak_pressure over p0 = 2 P/(pi a), the peak of an ellipse (section 5.2)'), &
+                                row_type('shear_number', '1', error_none, 'peak_shear over p0 = 2 P/(pi a)'), &
+                                row_type('force_number', '1', error_none, &
+                                         'force_amplitude over mu P: the lateral force ratio of section 6.4'), &
+                                row_type('shift_number', '1', error_none, &
+                                         'shift_amplitude times the relative curvature (section 5.2)'), &
+                                row_type('dissipation_number', '1', error_none, &
+                                         'cycle_dissipation over P^2 A, A = sum of (kappa + 1)/(4 G) (eq. 6.5)'), &
+                                row_type('stiffness_number', '1', error_none, 'tangential_stiffness times A'), &
+                                row_type('creepage', '1', error_smooth, &
+                                      'rolling: sliding of the upper body over the lower per rolled distance, both to the right'), &
+                                row_type('creepage_number', '1', error_none, &
+                                         'creepage over mu a K: K relative curvature, a contact_half_width (Carter 1926)'), &
+                                row_type('lower_tension', 'force/length^2', error_tension, &
+                                         'largest tension along the surface of the lower body at the end'), &
+                                row_type('lower_tension_x', 'length', error_place, 'where it is: x'), &
+                                row_type('upper_tension', 'force/length^2', error_tension, &
+                                         'largest tension along the surface of the upper body at the end'), &
+                                row_type('upper_tension_x', 'length', error_place, 'where it is: x'), &
+                                row_type('worn_area', 'length^2', error_smooth, &
+                                         'area worn off both profiles: volume per unit thickness'), &
+                                row_type('wear_depth', 'length', error_smooth, 'largest depth worn off both surfaces together'), &
+                                row_type('largest_lower_tension', 'force/length^2', error_tension, &
+                                         'largest tension along the surface of the lower body'//over), &
+                                row_type('largest_lower_tension_x', 'length', error_place, 'where it is: x'), &
+                                row_type('largest_lower_tension_row', '1', error_none, row_meaning), &
+                                row_type('largest_upper_tension', 'force/length^2', error_tension, &
+                                         'largest tension along the surface of the upper body'//over), &
+                                row_type('largest_upper_tension_x', 'length', error_place, 'where it is: x'), &
+                                row_type('largest_upper_tension_row', '1', error_none, row_meaning), &
+                                row_type('largest_pressure', 'force/length^2', error_pressure, 'largest pressure'//over), &
+                                row_type('largest_pressure_x', 'length', error_place, 'where it is: x of a node'), &
+                                row_type('largest_pressure_row', '1', error_none, row_meaning), &
+                                row_type('largest_shear', 'force/length^2', error_shear, &
+                                         'largest size of the shear traction'//over), &
+                                row_type('largest_shear_x', 'length', error_place, 'where it is: x'), &
+                                row_type('largest_shear_row', '1', error_none, row_meaning), &
+                                row_type('largest_slip_range', 'length', error_smooth, &
+                                         'largest range of the slip of a node at turning points in contact'//over), &
+                                row_type('largest_slip_range_x', 'length', error_place, 'where it is: x'), &
+                                row_type('smallest_stick_ratio', '1', error_stick, &
+                                         'smallest stick ratio, as stick_ratio'//over), &
+                                row_type('smallest_stick_ratio_row', '1', error_none, row_meaning), &
+                                row_type('largest_stick_ratio', '1', error_stick, 'largest stick ratio, as stick_ratio'//over), &
+                                row_type('largest_stick_ratio_row', '1', error_none, row_meaning), &
+                                row_type('largest_lower_von_mises', 'force/length^2', error_tension, &
+                                         'with yield_strength: largest von Mises '//'stress in the lower body'//over), &
+                                row_type('largest_lower_von_mises_x', 'length', error_place, 'where it is: x'), &
+                                row_type('largest_lower_von_mises_y', 'length', error_place, 'where it is: y'), &
+                                row_type('largest_lower_von_mises_row', '1', error_none, row_meaning), &
+                                row_type('largest_upper_von_mises', 'force/length^2', error_tension, &
+                                         'with yield_strength: largest von Mises '//'stress in the upper body'//over), &
+                                row_type('largest_upper_von_mises_x', 'length', error_place, 'where it is: x'), &
+                                row_type('largest_upper_von_mises_y', 'length', error_place, 'where it is: y'), &
+                                row_type('largest_upper_von_mises_row', '1', error_none, row_meaning)]
+
+   !> Places of some observables in the list.
+   integer, parameter :: place_half_width = findloc(observables%name, 'contact_half_width', dim=1), &
+                         place_stick_ratio = findloc(observables%name, 'stick_ratio', dim=1), &
+                         place_peak_pressure = findloc(observables%name, 'peak_pressure', dim=1), &
+                         place_peak_shear = findloc(observables%name, 'peak_shear', dim=1), &
+                         place_dissipation = findloc(observables%name, 'dissipation', dim=1), &
+                         place_lower_tension = findloc(observables%name, 'lower_tension', dim=1), &
+                         place_upper_tension = findloc(observables%name, 'upper_tension', dim=1), &
+                         place_cycle_dissipation = findloc(observables%name, 'cycle_dissipation', dim=1), &
+                         place_secant_stiffness = findloc(observables%name, 'secant_stiffness', dim=1), &
+                         place_loss_factor = findloc(observables%name, 'loss_factor', dim=1)
 
 contains
 
@@ -116,17 +173,15 @@ contains
    end function observable_place
 
    !> All observables at the present state of a simulation, with units; NaN if not available.
-   !> `without_von_mises`: not those that need a long search.
-   subroutine observables_of(simulation, values, without_von_mises)
+   subroutine observables_of(simulation, values)
       type(simulation_type), intent(in) :: simulation
       real(wp), intent(out) :: values(observable_count)
-      logical, intent(in), optional :: without_von_mises
       type(contact_state_type) :: state
       type(zone_edges_type) :: loading
 
       values = ieee_value(1.0_wp, ieee_quiet_nan)
       call add_present(simulation, values)
-      call add_extremes(simulation,.not. present(without_von_mises), values)
+      call add_extremes(simulation, values)
       if (simulation%marks(mark_loading)%step == 0) return
       state = simulation%padded(simulation%marks(mark_loading))
       call find_zone_edges(simulation%contact%model, state, loading)
@@ -201,15 +256,14 @@ contains
    end subroutine add_tension
 
    !> Extremes over the last cycle or, without one, over the load history.
-   subroutine add_extremes(simulation, von_mises, values)
+   subroutine add_extremes(simulation, values)
       type(simulation_type), intent(in) :: simulation
-      logical, intent(in) :: von_mises
       real(wp), intent(inout) :: values(:)
       type(load_extremes_type) :: extremes
       character(*), parameter :: body(2) = ['lower', 'upper']
       integer :: i
 
-      call simulation%find_extremes(von_mises, extremes)
+      call simulation%find_extremes(extremes)
       call put_extreme('largest_pressure', extremes%pressure)
       call put_extreme('largest_shear', extremes%shear)
       call put_extreme('largest_slip_range', extremes%slip_range)

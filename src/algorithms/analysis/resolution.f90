@@ -59,17 +59,41 @@ contains
       unresolved = [unresolved, unresolved_type(trim(quantities), why//'; not resolved: '//list//'; '//remedy)]
    end subroutine add_unresolved
 
-   !> Whether a quantity, by the name of its observable, is among those that are not resolved.
+   !> Whether an observable is among those that are not resolved, by its name or by that of a quantity or a group that it belongs to.
    pure logical function is_unresolved(unresolved, name)
       type(unresolved_type), intent(in) :: unresolved(:)
       character(*), intent(in) :: name
       integer :: i
 
-      is_unresolved = any([(has_word(unresolved(i)%quantities, name), i=1, size(unresolved))])
+      is_unresolved = any([(has_word(unresolved(i)%quantities, name) .or. &
+                            has_word(unresolved(i)%quantities, trim(named_as(name))), i=1, size(unresolved))])
    end function is_unresolved
 
-   !> The quantities that depend on all contact patches, separated by blanks and padded with them. `extremes`: all largest_... and
-   !> smallest_...; `turning_points`: all ..._loading, ..._reversal and ..._return, and amplitudes.
+   !> The quantity or group whose name stands for an observable where quantities are not resolved, padded with blanks.
+   pure function named_as(name)
+      character(*), intent(in) :: name
+      character(len=20) :: named_as
+
+      select case (name)
+      case ('contact_centre')
+         named_as = 'contact_length'
+      case ('normal_force')
+         named_as = 'approach'
+      case ('tangential_force', 'creepage')
+         named_as = 'shift'
+      case ('worn_area', 'wear_depth')
+         named_as = 'dissipation'
+      case ('lower_tension_x', 'upper_tension_x')
+         named_as = name(:13)
+      case default
+         named_as = ''
+         if (index(name, 'largest_') == 1 .or. index(name, 'smallest_') == 1) named_as = 'extremes'
+         if (any([character(9) :: 'loading', 'reversal', 'return', 'amplitude'] == name(index(name, '_', back=.true.) + 1:)) .or. &
+             name == 'first_cycle_dissipation') named_as = 'turning_points'
+      end select
+   end function named_as
+
+   !> The quantities that depend on all contact patches, separated by blanks and padded with them; for the groups see `named_as`.
    function all_quantities(simulation) result(names)
       type(simulation_type), intent(in) :: simulation
       character(len=240) :: names

@@ -6,16 +6,7 @@ module mfv_error_bar
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: error_bar_type, error_estimate_type, new_error_bar, unresolved_bar, logarithmic_bar, quantity_count, &
-             quantity_half_width, quantity_stick_ratio, quantity_peak_pressure, quantity_peak_shear, quantity_dissipation, &
-             quantity_lower_tension, quantity_upper_tension, quantity_cycle_dissipation, quantity_secant_stiffness, &
-             quantity_loss_factor, lowest_order, highest_order
-
-   !> Estimated quantities.
-   integer, parameter :: quantity_half_width = 1, quantity_stick_ratio = 2, quantity_peak_pressure = 3, &
-                         quantity_peak_shear = 4, quantity_dissipation = 5, quantity_lower_tension = 6, &
-                         quantity_upper_tension = 7, quantity_cycle_dissipation = 8, quantity_tangential_stiffness = 9, &
-                         quantity_secant_stiffness = 10, quantity_loss_factor = 11, quantity_count = 11
+   public :: error_bar_type, error_estimate_type, new_error_bar, unresolved_bar, logarithmic_bar, lowest_order, highest_order
 
    !> A quantity with its error bar.
    type :: error_bar_type
@@ -42,7 +33,8 @@ module mfv_error_bar
       !> Intervals of the mesh and of the coarser meshes, finest first; as &mesh nodes.
       integer :: nodes = 0
       integer, allocatable :: coarser_nodes(:)
-      type(error_bar_type) :: bar(quantity_count)
+      !> Of every observable, in their order (see mfv_observables); empty if there are none.
+      type(error_bar_type), allocatable :: bar(:)
    end type error_estimate_type
 
    !> Accepted orders: tractions and edges converge with order 1, integrals with 2. The sawtooth can simulate any order.

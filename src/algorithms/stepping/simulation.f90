@@ -970,10 +970,9 @@ contains
    end function stretch
 
    !> The extremes of the last complete cycle or, without one, of the rows of &history or all steps so far; of rows that follow the
-   !> cycles, or a first cycle that is not complete: of these. `von_mises`: whether to search for the largest von Mises stresses.
-   subroutine find_extremes(self, von_mises, extremes)
+   !> cycles, or a first cycle that is not complete: of these.
+   subroutine find_extremes(self, extremes)
       class(simulation_type), intent(in) :: self
-      logical, intent(in) :: von_mises
       type(load_extremes_type), intent(out) :: extremes
       integer :: i
 
@@ -985,7 +984,6 @@ contains
             call search(self, mark_of(mark_candidate, candidate_tension(i), 1), candidate_tension(i), extremes)
          end do
       end if
-      if (.not. von_mises) return
       do i = 1, size(candidate_von_mises)
          call search(self, merge(mark_of(mark_last_cycle, i, 1), mark_of(mark_candidate, candidate_von_mises(i), 1), &
                                  ends_with_cycle(self)), candidate_von_mises(i), extremes)

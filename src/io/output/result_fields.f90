@@ -10,7 +10,6 @@ module mfv_result_fields
    use mfv_compliance, only: coupling_names
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
-   use mfv_discretisation_error, only: quantity_names
    use mfv_error_bar
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
@@ -147,7 +146,7 @@ contains
       case ('reference')
          call add_reference(list, simulation)
       case ('error_estimate')
-         if (has_estimate(simulation)) call add_estimate(list, simulation, simulation%estimate)
+         if (has_estimate(simulation)) call add_estimate(list, simulation%estimate)
       case ('sensitivity')
          if (has_sensitivity(simulation)) call add_sensitivity(list, simulation%sensitivity)
       case ('history')
@@ -738,30 +737,15 @@ contains
    end subroutine add_reference
 
    !> Error bars: of each quantity its value, error, order, and its values on the coarser meshes.
-   subroutine add_estimate(list, simulation, estimate)
+   subroutine add_estimate(list, estimate)
       type(list_type), intent(inout) :: list
-      type(simulation_type), intent(in) :: simulation
       type(error_estimate_type), intent(in) :: estimate
-      type(zone_edges_type) :: edges
-      type(error_bar_type) :: length
       integer :: i
 
-      call find_zone_edges(simulation%contact%model, simulation%contact%state, edges)
       call list%add('nodes', estimate%nodes, 'intervals of the mesh, as &mesh nodes counts them')
       call list%add('companion_nodes', estimate%coarser_nodes, along_companions, 'intervals of the coarser meshes')
-      do i = 1, quantity_count
-         associate (row => observables(observable_place(quantity_names(i))))
-            if (i == quantity_half_width .and. edges%patches > 1) then
-               length = estimate%bar(i)
-               length%value = 2.0_wp*length%value
-               length%error = 2.0_wp*length%error
-               length%coarser_values = 2.0_wp*length%coarser_values
-               call add_bar(list, length, 'contact_length', 'length', 'length of the contact, of all its patches, from edges '// &
-                            'between nodes')
-            else
-               call add_bar(list, estimate%bar(i), trim(row%name), trim(row%unit), trim(row%meaning))
-            end if
-         end associate
+      do i = 1, observable_count
+         call add_bar(list, estimate%bar(i), trim(observables(i)%name), trim(observables(i)%unit), trim(observables(i)%meaning))
       end do
    end subroutine add_estimate
 

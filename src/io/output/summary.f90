@@ -3,12 +3,11 @@ module mfv_summary
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_case, only: case_type
    use mfv_contact_model, only: contact_model_type, new_contact_model
-   use mfv_discretisation_error, only: quantity_names
-   use mfv_error_bar
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
    use mfv_load_extremes, only: over_rows, over_steps
    use mfv_motions, only: motions, motion_count => user_motions, motion_rotation, bulk_motions
+   use mfv_observables, only: observable_place
    use mfv_result_fields, only: field_named, field_type, group_fields
    use mfv_simulation, only: simulation_type
    use mfv_status, only: status_outcome
@@ -229,32 +228,43 @@ contains
       call add_line(text, 'compliance', words(3:)//', assembled in '//to_text(model%assembly_seconds, 2)//' s')
    end subroutine add_compliance
 
-   !> Values with their error bars, one per line, or why there are none.
+   !> Values with their error bars, one per line, or why there are none: of the observables that the summary shows; the file has the
+   !> bars of all.
    subroutine add_estimate(text, case, simulation)
       character(:), allocatable, intent(inout) :: text
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
-      character(*), parameter :: words(quantity_count) = [character(21) :: 'contact half-width', 'stick ratio', 'peak pressure', &
-                                                                             'peak shear', 'dissipation', 'tension of lower body', &
-                                                             'tension of upper body', 'cycle dissipation', 'tangential stiffness', &
-                                                                                                  'secant stiffness', 'loss factor']
+      character(*), parameter :: names(18) = [character(21) :: 'largest_lower_tension', 'largest_upper_tension', &
+                                                'largest_pressure', 'largest_shear', 'largest_slip_range', 'smallest_stick_ratio', &
+                                                           'contact_length', 'contact_half_width', 'stick_ratio', 'peak_pressure', &
+                                               'peak_shear', 'dissipation', 'lower_tension', 'upper_tension', 'cycle_dissipation', &
+                                                                          'tangential_stiffness', 'secant_stiffness', 'loss_factor']
+      !> The first ones are extremes over the last cycle, rows or steps.
+      integer, parameter :: extremes = 6
+      character(*), parameter :: words(size(names)) = [character(29) :: 'largest tension of lower body', &
+                                                             'largest tension of upper body', 'largest pressure', 'largest shear', &
+                                                                   'largest slip range', 'smallest stick ratio', 'contact length', &
+                                                               'contact half-width', 'stick ratio', 'peak pressure', 'peak shear', &
+                                                                  'dissipation', 'tension of lower body', 'tension of upper body', &
+                                                                  'cycle dissipation', 'tangential stiffness', 'secant stiffness', &
+                                                                                                                      'loss factor']
       type(field_type), allocatable :: fields(:)
       character(:), allocatable :: meshes, value, percent
-      integer :: i
+      integer :: i, first
 
       if (simulation%estimate%message /= '') then
          call add_line(text, 'error estimate', 'none: '//simulation%estimate%message)
          return
       end if
       call group_fields(case, simulation, 'error_estimate', fields)
-      ! Several patches have a total length but no half-width.
-      if (field_named(fields, 'contact_length') > 0) &
-         call add_line(text, 'error estimate', 'contact length '//amount(fields, 'contact_length')//' +- '// &
-                       to_text(2.0_wp*simulation%estimate%bar(quantity_half_width)%error, 2))
-      do i = 1, quantity_count
-         associate (bar => simulation%estimate%bar(i))
-            if (.not. bar%known .or. field_named(fields, trim(quantity_names(i))) == 0) cycle
-            value = trim(words(i))//' '//amount(fields, trim(quantity_names(i)))
+      first = 1
+      if (simulation%stretch() == over_steps) first = extremes + 1
+      do i = first, size(names)
+         associate (bar => simulation%estimate%bar(observable_place(trim(names(i)))))
+            if (.not. bar%known) cycle
+            ! Several patches have a total length but no half-width.
+            if (names(i) == 'contact_length' .and. field_named(fields, 'contact_half_width') > 0) cycle
+            value = trim(words(i))//' '//amount(fields, trim(names(i)))
             percent = ''
             if (abs(bar%value) > 0.0_wp) percent = ' ('//to_text(100.0_wp*bar%error/abs(bar%value), 2)//' %)'
             if (.not. bar%resolved) then
