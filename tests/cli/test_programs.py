@@ -198,15 +198,22 @@ def test_error_estimate_in_summary_and_file(tmp_path):
     with h5py.File(tmp_path / "key.h5") as result, h5py.File(tmp_path / "option.h5") as other:
         estimate = result["error_estimate"]
         names = ("contact_half_width", "stick_ratio", "peak_pressure", "peak_shear", "dissipation", "lower_tension")
+        # Every observable but prescribed forces, counts and numbers.
+        quantities = {name.removesuffix("_error") for name in estimate if name.endswith("_error")}
         assert set(estimate) == {"nodes", "companion_nodes"} | {
-            name + end for name in names for end in ("", "_error", "_order", "_companions")
+            name + end for name in quantities for end in ("", "_error", "_order", "_companions")
         }
+        assert quantities == {
+            *names, "contact_length", "contact_centre", "approach", "shift", "lower_tension_x", "largest_lower_tension",
+            "largest_lower_tension_x", "largest_pressure", "largest_shear", "largest_shear_x", "smallest_stick_ratio",
+            "largest_stick_ratio", "largest_slip_range", "largest_slip_range_x",
+        }  # fmt: skip
         for name, dataset in estimate.items():
             assert dataset.attrs["units"] and dataset.attrs["long_name"]
             np.testing.assert_array_equal(dataset[()], other["error_estimate"][name][()])
         assert estimate["stick_ratio_companions"].dims[0][0] == estimate["companion_nodes"]
         assert estimate["contact_half_width_error"].attrs["units"] == "mm"
-        for name in names:
+        for name in quantities:
             assert estimate[name][()] == result["observables"][name][()]
         assert abs(estimate["stick_ratio"][()] - 0.6**0.5) < 2 * estimate["stick_ratio_error"][()] < 2e-3
         assert result.attrs["error_estimate"] == "yes"

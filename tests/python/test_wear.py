@@ -94,13 +94,13 @@ ALUMINIUM: dict[str, Any] = {"youngs_modulus": 74100, "poisson_ratio": 0.33}
 CHANGING = {"normal_force": [300, 450, 300, 150], "tangential_force": [100, 0, -100, 0]}
 
 
-def cycled(loads: dict[str, list[float]], *, cycles: int = 4, steady: float | None = None, **wear: Any) -> mfv.Result:
+def cycled(loads: dict[str, list[float]], *, cycles: int = 4, nodes: int = 101, steady: float | None = None, **wear: Any) -> mfv.Result:
     """Two elastic bodies, or a rigid one where the history has approach or rotation, under closed cycles."""
     pad: dict[str, Any] = {"rigid": True} if {"approach", "rotation"} & set(loads) else ALUMINIUM
     return mfv.Scene(
         mfv.Body.half_plane(**ALUMINIUM),
         mfv.Body.disk(50, **pad),
-        mesh=mfv.Mesh(nodes=101),
+        mesh=mfv.Mesh(nodes=nodes),
         friction=mfv.Friction.coulomb(0.6),
         wear=mfv.Wear(**{"law": "work", "coefficient": 2.0e-9, **wear}),
         steps=[mfv.Step(normal_force=300)],
@@ -157,17 +157,17 @@ def test_wear_does_not_depend_on_the_row_where_the_cycle_starts() -> None:
     ids=["force", "coupling", "low", "phase", "rocking", "approach", "separation"],
 )
 def test_blocks_where_the_pressure_changes_within_the_cycle(coefficient: float, loads: dict[str, list[float]]) -> None:
-    """200 cycles in blocks against single cycles: worn area and dissipation within 1.2 times the tolerance."""
-    exact = cycled(loads, cycles=200, coefficient=coefficient, block=1)
+    """100 cycles in blocks against single cycles: worn area and dissipation within 1.2 times the tolerance."""
+    exact = cycled(loads, nodes=61, cycles=100, coefficient=2.0 * coefficient, block=1)
     for tolerance in (0.05, 0.01):
-        blocks = cycled(loads, cycles=200, coefficient=coefficient, tolerance=tolerance)
-        assert len(blocks.cycles.block) < 100
+        blocks = cycled(loads, nodes=61, cycles=100, coefficient=2.0 * coefficient, tolerance=tolerance)
+        assert len(blocks.cycles.block) < 60
         for name in ("worn_area", "dissipation"):
             limit = max(1.2 * tolerance, 0.02)
             assert blocks.observables[name] == pytest.approx(exact.observables[name], rel=limit), (name, tolerance)
         computed = np.sum(blocks.cycles.block * blocks.cycles.dissipation)
-        assert blocks.observables.worn_area == pytest.approx(coefficient * computed, rel=0.1)
-        assert blocks.observables.worn_area == pytest.approx(coefficient * blocks.observables.dissipation, rel=0.02)
+        assert blocks.observables.worn_area == pytest.approx(2.0 * coefficient * computed, rel=0.1)
+        assert blocks.observables.worn_area == pytest.approx(2.0 * coefficient * blocks.observables.dissipation, rel=0.02)
 
 
 @pytest.mark.parametrize("block", [None, 10])
@@ -446,7 +446,7 @@ def uneven_scene(seed: int, *, half: bool = False, **wear: Any) -> mfv.Scene:
     )
 
 
-SEEDS = 500 if "MFV_DEEP" in os.environ else 24
+SEEDS = 500 if "MFV_DEEP" in os.environ else 16
 
 
 def compared(result: mfv.Result, exact: mfv.Result) -> float:

@@ -51,7 +51,7 @@ def test_dask(study):
     assert table.identical(by_address)
 
 
-@pytest.mark.parametrize("ranks", [2, 3])
+@pytest.mark.parametrize("ranks", [3])
 def test_mpi(study, ranks, tmp_path):
     """One rank hands out, the others solve."""
     pytest.importorskip("mpi4py")

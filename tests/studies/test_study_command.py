@@ -270,12 +270,12 @@ def test_only_new_cases_are_solved(tmp_path):
     assert run("study.nml", "--again", cwd=tmp_path).returncode == COMPLETE and cases_kept(tmp_path) == CASES
 
 
-def test_killed_at_ten_random_moments(tmp_path):
+def test_killed_at_random_moments(tmp_path):
     cases = long_study(tmp_path)
     undisturbed = read_study(tmp_path / "study.nml").run()
     chance = random.Random(17)
     before = 0
-    for _ in range(10):
+    for _ in range(5):
         process = start("study.nml", "--workers", 2, cwd=tmp_path)
         is_alive = wait_for_growth(tmp_path, bytes_kept(tmp_path) + chance.uniform(0.0, 12.0) * 4096, process)
         process.kill()
@@ -293,8 +293,7 @@ def test_killed_at_ten_random_moments(tmp_path):
     assert before > 0 and cases_kept(tmp_path) == cases
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("executor", ["threads", "processes"])
+@pytest.mark.parametrize(("executor", "number"), [("threads", signal.SIGINT), ("processes", signal.SIGTERM)])
 def test_interrupted(executor, number, tmp_path):
     cases = long_study(tmp_path)
     process = start("study.nml", "--executor", executor, "--workers", 2, cwd=tmp_path)

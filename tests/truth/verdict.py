@@ -21,6 +21,8 @@ RIGHT = 0.01
 BARS = 3.0
 #: Bars that are beyond this many of their own are counted.
 STATISTIC = 2.0
+#: Errors that are round-off.
+ROUND_OFF = 1.0e-10
 #: The truth is known if it is at least this many times better known than the error is large.
 KNOWN = 3.0
 
@@ -111,8 +113,8 @@ class Verdict(NamedTuple):
 
     @property
     def holds(self) -> bool | None:
-        """Whether the error is within twice the bar; None if there is no bar or the truth does not decide."""
-        if not 0.0 < self.bar < math.inf:
+        """Whether the error is within twice the bar; None if there is no bar, the error is round-off, or the truth does not decide."""
+        if not 0.0 < self.bar < math.inf or self.error < ROUND_OFF:
             return None
         if self.error + self.uncertainty <= STATISTIC * self.bar:
             return True

@@ -2,7 +2,7 @@
 !> (mfv_error_bar).
 module mfv_discretisation_error
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-   use mfv_body, only: body_type, shape_matrix
+   use mfv_body, only: body_type, shape_matrix, shape_profile
    use mfv_circle, only: kernel_fourier
    use mfv_closed_form, only: alike
    use mfv_compliance, only: block_up, block_wt
@@ -32,7 +32,7 @@ module mfv_discretisation_error
    integer, parameter :: fewest_contact_nodes = 5
    !> Factor on the bars of unequal intervals, whose coarser meshes differ less from them than their errors do: measured
    !> (docs/verification.md).
-   real(wp), parameter :: of_unequal_intervals = 4.0_wp
+   real(wp), parameter :: of_unequal_intervals = 3.0_wp
 
 contains
 
@@ -70,8 +70,9 @@ contains
             else if (is_there(simulation%contact%model, place, values(place, :))) then
                associate (behaviour => observables(place)%error)
                   estimate%bar(place) = new_error_bar(nodes, values(place, :), allowances(place, :), &
-                                                      any(behaviour == [error_edges, error_stick, error_tension, error_place]), &
-                                                      all(behaviour /= [error_pressure, error_shear, error_tension]))
+                                                      any(behaviour == [error_edges, error_stick, error_place]), &
+                                                      is_smooth(simulation%contact%model%scene, behaviour), &
+                                                      all(behaviour /= [error_pressure, error_shear, error_local]))
                end associate
                if (allocated(simulation%contact%model%scene%mesh%ends)) &
                   estimate%bar(place)%error = of_unequal_intervals*estimate%bar(place)%error
@@ -107,6 +108,16 @@ contains
          if (behaviour == error_shear) peak_is_at_corner = peak_is_at_corner .and. state%friction_work(peak) > 0.0_wp
       end associate
    end function peak_is_at_corner
+
+   !> Whether observables with this behaviour can converge faster than with the first power of the interval: not those of edges, and
+   !> of pressures not the peaks at kinks of a profile.
+   pure logical function is_smooth(scene, behaviour)
+      type(scene_type), intent(in) :: scene
+      integer, intent(in) :: behaviour
+
+      is_smooth = any(behaviour == [error_load, error_smooth, error_pressure])
+      if (behaviour == error_pressure) is_smooth = all([scene%lower%shape, scene%upper%shape] /= shape_profile)
+   end function is_smooth
 
    !> Whether an observable is modelled, is not prescribed, and is not zero on all meshes.
    pure logical function is_there(model, place, values)

@@ -15,7 +15,7 @@ module mfv_observables
    implicit none
    private
    public :: observable_count, observables, observable_place, observables_of, error_none, error_load, error_smooth, error_edges, &
-             error_stick, error_pressure, error_shear, error_tension, error_place
+             error_stick, error_pressure, error_shear, error_local, error_place
    public :: place_half_width, place_stick_ratio, place_peak_pressure, place_peak_shear, place_dissipation, place_lower_tension, &
              place_upper_tension, place_cycle_dissipation, place_secant_stiffness, place_loss_factor
 
@@ -23,7 +23,7 @@ module mfv_observables
    !> their factors); none where the load is prescribed; smooth; that of edges of the contact, of stick zones, of the peaks of
    !> the tractions, of a stress that can be at an edge; that of a place.
    integer, parameter :: error_none = 0, error_load = 1, error_smooth = 2, error_edges = 3, error_stick = 4, error_pressure = 5, &
-                         error_shear = 6, error_tension = 7, error_place = 8
+                         error_shear = 6, error_local = 7, error_place = 8
 
    !> Name, as in tables and files; unit in terms of length and force (energies per unit thickness), or 1; behaviour of the
    !> discretisation error; meaning.
@@ -106,20 +106,20 @@ module mfv_observables
                                       'rolling: sliding of the upper body over the lower per rolled distance, both to the right'), &
                                 row_type('creepage_number', '1', error_none, &
                                          'creepage over mu a K: K relative curvature, a contact_half_width (Carter 1926)'), &
-                                row_type('lower_tension', 'force/length^2', error_tension, &
+                                row_type('lower_tension', 'force/length^2', error_local, &
                                          'largest tension along the surface of the lower body at the end'), &
                                 row_type('lower_tension_x', 'length', error_place, 'where it is: x'), &
-                                row_type('upper_tension', 'force/length^2', error_tension, &
+                                row_type('upper_tension', 'force/length^2', error_local, &
                                          'largest tension along the surface of the upper body at the end'), &
                                 row_type('upper_tension_x', 'length', error_place, 'where it is: x'), &
                                 row_type('worn_area', 'length^2', error_smooth, &
                                          'area worn off both profiles: volume per unit thickness'), &
                                 row_type('wear_depth', 'length', error_smooth, 'largest depth worn off both surfaces together'), &
-                                row_type('largest_lower_tension', 'force/length^2', error_tension, &
+                                row_type('largest_lower_tension', 'force/length^2', error_local, &
                                          'largest tension along the surface of the lower body'//over), &
                                 row_type('largest_lower_tension_x', 'length', error_place, 'where it is: x'), &
                                 row_type('largest_lower_tension_row', '1', error_none, row_meaning), &
-                                row_type('largest_upper_tension', 'force/length^2', error_tension, &
+                                row_type('largest_upper_tension', 'force/length^2', error_local, &
                                          'largest tension along the surface of the upper body'//over), &
                                 row_type('largest_upper_tension_x', 'length', error_place, 'where it is: x'), &
                                 row_type('largest_upper_tension_row', '1', error_none, row_meaning), &
@@ -130,7 +130,7 @@ module mfv_observables
                                          'largest size of the shear traction'//over), &
                                 row_type('largest_shear_x', 'length', error_place, 'where it is: x'), &
                                 row_type('largest_shear_row', '1', error_none, row_meaning), &
-                                row_type('largest_slip_range', 'length', error_smooth, &
+                                row_type('largest_slip_range', 'length', error_local, &
                                          'largest range of the slip of a node at turning points in contact'//over), &
                                 row_type('largest_slip_range_x', 'length', error_place, 'where it is: x'), &
                                 row_type('smallest_stick_ratio', '1', error_stick, &
@@ -138,12 +138,12 @@ module mfv_observables
                                 row_type('smallest_stick_ratio_row', '1', error_none, row_meaning), &
                                 row_type('largest_stick_ratio', '1', error_stick, 'largest stick ratio, as stick_ratio'//over), &
                                 row_type('largest_stick_ratio_row', '1', error_none, row_meaning), &
-                                row_type('largest_lower_von_mises', 'force/length^2', error_tension, &
+                                row_type('largest_lower_von_mises', 'force/length^2', error_local, &
                                          'with yield_strength: largest von Mises '//'stress in the lower body'//over), &
                                 row_type('largest_lower_von_mises_x', 'length', error_place, 'where it is: x'), &
                                 row_type('largest_lower_von_mises_y', 'length', error_place, 'where it is: y'), &
                                 row_type('largest_lower_von_mises_row', '1', error_none, row_meaning), &
-                                row_type('largest_upper_von_mises', 'force/length^2', error_tension, &
+                                row_type('largest_upper_von_mises', 'force/length^2', error_local, &
                                          'with yield_strength: largest von Mises '//'stress in the upper body'//over), &
                                 row_type('largest_upper_von_mises_x', 'length', error_place, 'where it is: x'), &
                                 row_type('largest_upper_von_mises_y', 'length', error_place, 'where it is: y'), &

@@ -22,7 +22,7 @@ module mfv_refinement
    real(wp), parameter :: coarse_part = 0.5_wp
    integer, parameter :: fewest_coarse = 60
    !> Room beyond the outermost contact edges, relative to the distance between them; factor if it was too small.
-   real(wp), parameter :: room = 0.03_wp, more = 3.0_wp
+   real(wp), parameter :: room = 0.06_wp, more = 3.0_wp
    !> Most cycles of a step on the coarser meshes.
    integer, parameter :: most_cycles = 2
 

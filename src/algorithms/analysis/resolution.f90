@@ -322,7 +322,7 @@ contains
          integer, intent(in) :: its_nodes
          real(wp), intent(in) :: its_width
 
-         names = names//' '//trim(quantities)
+         if (index(names//' ', ' '//trim(quantities)//' ') == 0) names = names//' '//trim(quantities)
          nodes = min(nodes, its_nodes)
          width = min(width, its_width)
       end subroutine add

@@ -219,6 +219,8 @@ contains
       class(cycle_type), intent(in) :: self
       !> Part of the area by which an open loop may be uncertain.
       real(wp), parameter :: negligible = 0.01_wp
+      !> Loss factor, and part of the amplitudes, that is a rounding error.
+      real(wp), parameter :: round_off = 1.0e-9_wp
       real(wp) :: open_work
 
       loss_factor = ieee_value(1.0_wp, ieee_quiet_nan)
@@ -227,7 +229,8 @@ contains
       if (self%only_sheared()) loss_factor = self%dissipation()
       open_work = self%force_amplitude()*abs(self%drift(motion_shift)) + &
                   self%shift_amplitude()*abs(self%return%force(motion_shift) - self%start%force(motion_shift))
-      if (open_work > negligible*abs(loss_factor)) loss_factor = ieee_value(1.0_wp, ieee_quiet_nan)
+      if (open_work > negligible*abs(loss_factor) + round_off*self%force_amplitude()*self%shift_amplitude()) &
+         loss_factor = ieee_value(1.0_wp, ieee_quiet_nan)
       loss_factor = loss_factor/(pi*self%force_amplitude()*self%shift_amplitude())
    end function loss_factor
 

@@ -39,8 +39,8 @@ module mfv_error_bar
 
    !> Accepted orders: tractions and edges converge with order 1, integrals with 2. The sawtooth can simulate any order.
    real(wp), parameter :: lowest_order = 1.0_wp, highest_order = 2.0_wp
-   !> Safety factor on Richardson's estimate, usual for three and more meshes (Roache 1994).
-   real(wp), parameter :: safety = 1.25_wp
+   !> Safety factor on Richardson's estimate: 1.25 is usual for three and more meshes where the order is known (Roache 1994).
+   real(wp), parameter :: safety = 1.6_wp
    !> A peak diverges if it grows with a power of the number of intervals between these, equal from mesh to mesh to within
    !> this factor: 1/2 at the edge of a flat punch, below 1 for any finite force.
    real(wp), parameter :: growth_factor = 1.5_wp, least_growth = 0.2_wp, most_growth = 1.0_wp
@@ -53,12 +53,12 @@ contains
 
    !> Error bar of a quantity with `values` on meshes of `nodes` intervals, finest first, shape (2 or more). `allowances`:
    !> uncertainty within an interval on each mesh, in the unit of the values, shape of values. `by_edges`: values depend on
-   !> edges of zones, whose errors jump from mesh to mesh: of first order, and differences below the allowances have no
-   !> significance. `bounded`: the quantity always has a limit.
-   pure type(error_bar_type) function new_error_bar(nodes, values, allowances, by_edges, bounded) result(bar)
+   !> edges of zones, whose errors jump from mesh to mesh: differences below the allowances have no
+   !> significance. `smooth`: of up to second order. `bounded`: the quantity always has a limit.
+   pure type(error_bar_type) function new_error_bar(nodes, values, allowances, by_edges, smooth, bounded) result(bar)
       integer, intent(in) :: nodes(:)
       real(wp), intent(in) :: values(:), allowances(:)
-      logical, intent(in) :: by_edges, bounded
+      logical, intent(in) :: by_edges, smooth, bounded
       real(wp), dimension(size(values) - 1) :: ratio, difference
       real(wp) :: scatter
 
@@ -74,7 +74,7 @@ contains
       difference = abs(values(2:) - values(1))
       if (by_edges) difference = max(difference - allowances(2:) - allowances(1) - tolerance*abs(values(1)), 0.0_wp)
       bar%order = lowest_order
-      if (.not. by_edges) bar%order = observed_order(nodes, values)
+      if (smooth) bar%order = observed_order(nodes, values)
       scatter = norm2(difference/(ratio**bar%order - 1.0_wp))/sqrt(real(size(difference), wp))
       bar%error = norm2([allowances(1), safety*scatter])
    end function new_error_bar

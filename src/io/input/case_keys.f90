@@ -280,7 +280,7 @@ contains
                     'with the largest tension along it and its x, at the end of every step, row and turning point; if omitted: '// &
                     'neither', unit='length')
       call keys%add('output', 'error_estimate', kind_logical, 'whether the case is also solved on coarser meshes, to estimate '// &
-                    'the discretisation error of half-width, stick ratio, peak tractions, dissipation, largest tension and loops', &
+                    'the discretisation errors of the observables', &
                     default='.false.')
       call keys%add('output', 'sensitivity', kind_logical, 'whether the case is run once more with all coefficients of '// &
                     'friction times 1 + 1e-12, to report how much that changes tractions, dissipation and stick ratio', &
