@@ -94,7 +94,9 @@ ALUMINIUM: dict[str, Any] = {"youngs_modulus": 74100, "poisson_ratio": 0.33}
 CHANGING = {"normal_force": [300, 450, 300, 150], "tangential_force": [100, 0, -100, 0]}
 
 
-def cycled(loads: dict[str, list[float]], *, cycles: int = 4, nodes: int = 101, steady: float | None = None, **wear: Any) -> mfv.Result:
+def cycled(
+    loads: dict[str, list[float]], *, cycles: int = 4, nodes: int = 101, steady: float | None = None, **wear: Any
+) -> mfv.Result:
     """Two elastic bodies, or a rigid one where the history has approach or rotation, under closed cycles."""
     pad: dict[str, Any] = {"rigid": True} if {"approach", "rotation"} & set(loads) else ALUMINIUM
     return mfv.Scene(

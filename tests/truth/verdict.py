@@ -83,7 +83,6 @@ EQUAL = {
     "edge_stick_ratio": "stick_ratio",
     "stick_ratio_lowest": "smallest_stick_ratio",
     "stick_ratio_highest": "largest_stick_ratio",
-    "shift_force_work": "cycle_dissipation",
 }
 #: Observables whose relative bars add up to that of a quantity.
 FACTORS = {
@@ -235,7 +234,7 @@ def bar_of(base: mfv.Result, path: str, value: float) -> float:
         return bar_of(base, f"observables/{shift}", math.nan) * 0.5 * float(base.observables.contact_length)
     if re.fullmatch(f"{_POSITION}|{_STICK_POSITION}", name):
         return _bar_of_position(base, name)
-    factors = FACTORS.get(name)
+    factors = ("cycle_dissipation",) if name.endswith("_work") else FACTORS.get(name)
     if not factors:
         return _error_of(base, EQUAL.get(name, public_name(path)))
     relative = 0.0

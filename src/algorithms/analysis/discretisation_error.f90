@@ -32,7 +32,7 @@ module mfv_discretisation_error
    integer, parameter :: fewest_contact_nodes = 5
    !> Factor on the bars of unequal intervals, whose coarser meshes differ less from them than their errors do: measured
    !> (docs/verification.md).
-   real(wp), parameter :: of_unequal_intervals = 3.0_wp
+   real(wp), parameter :: of_unequal_intervals = 2.0_wp
 
 contains
 

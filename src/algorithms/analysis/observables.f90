@@ -68,7 +68,7 @@ module mfv_observables
                                          'energy dissipated in the first cycle, per unit thickness'), &
                                 row_type('cycle_change', '1', error_none, &
                                          'largest change of a traction over the last cycle, relative to the largest traction'), &
-                                row_type('shift_drift', 'length', error_none, &
+                                row_type('shift_drift', 'length', error_smooth, &
                                          'change of the shift over the last cycle: not 0 where the upper body walks'), &
                                 row_type('force_amplitude', 'force/length', error_load, &
                                          'half the range of the tangential force in the last cycle'), &

@@ -79,7 +79,7 @@ contains
          named_as = 'contact_length'
       case ('normal_force')
          named_as = 'approach'
-      case ('tangential_force', 'creepage')
+      case ('tangential_force', 'shift_drift', 'creepage')
          named_as = 'shift'
       case ('worn_area', 'wear_depth')
          named_as = 'dissipation'

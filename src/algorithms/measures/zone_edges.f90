@@ -341,7 +341,7 @@ contains
       type(patch_type), intent(in) :: patch
       integer, intent(in) :: side
       real(wp), intent(out) :: edge, error
-      real(wp) :: lack(size(state%status)), power, direction, widest
+      real(wp) :: lack(size(state%status)), power, direction, widest, least
       type(samples_type) :: samples
       integer :: last, next, other, patch_end
 
@@ -352,6 +352,7 @@ contains
       edge = model%arc(last) + 0.5_wp*side*model%width(last)
       error = error_if_unknown*model%width(last)
       widest = huge(widest)
+      least = 0.0_wp
       if (last == patch_end) then
          edge = merge(patch%right, patch%left, side > 0)
          if (merge(patch%right_ends, patch%left_ends, side > 0) .or. last == other) return
@@ -370,7 +371,9 @@ contains
             if (next /= last) edge = edge_by_slip(model, state, next, side, edge)
             return
          end if
-         ! One node may stick or slip: the edge must not depend on that.
+         ! One node may stick or slip: the edge must not depend on that. Where a load returns to a former one, the slip of this
+         ! segment ends there, that of the former one here.
+         least = model%width(last)
          last = last - side
       end if
       power = 0.5_wp - side*exponent_shift(model, next, direction*model%kinetic_friction(next))
@@ -378,7 +381,7 @@ contains
       if (.not. model%compliance%elastic_block(block_wt)) samples%is_regular = has_known_error(model, last, samples%number)
       edge = model%arc(last) + side*model%width(last)*distance_of_lack(samples, power)
       if (widest < huge(widest)) edge = side*max(side*edge, side*merge(patch%right, patch%left, side > 0) - widest)
-      error = model%width(last)*max(uncertainty(straightened(samples, power)), least_stick_error)
+      error = max(least, model%width(last)*max(uncertainty(straightened(samples, power)), least_stick_error))
       call correct_by_slip(edge, error)
 
    contains
