@@ -68,7 +68,7 @@ contains
          truth(place_stick_ratio) = mindlin_stick_ratio(shear_force, force, mu)
          truth(place_peak_shear) = mu*truth(place_peak_pressure)*sqrt(shear_force/(mu*force))
          truth(place_dissipation) = mindlin_dissipation(shear_force, force, half_width, length*radius, mu) &
-                                       *merge(1.25_wp, 0.25_wp, modulo(i, kinds) == kind_cycle)
+                                    *merge(1.25_wp, 0.25_wp, modulo(i, kinds) == kind_cycle)
          ! The sum of both shear tractions of Mindlin behind the contact: 2 mu p0 (x - sqrt(x^2 - a^2))/a of each (Johnson 1985,
          ! section 7.1), at x = a.
          truth(place_lower_tension) = 2.0_wp*truth(place_peak_shear)

@@ -110,12 +110,12 @@ contains
    end function peak_is_at_corner
 
    !> Whether observables with this behaviour can converge faster than with the first power of the interval: not those of edges, and
-   !> of pressures not the peaks at kinks of a profile.
+   !> not the peak pressure at a kink of a profile.
    pure logical function is_smooth(scene, behaviour)
       type(scene_type), intent(in) :: scene
       integer, intent(in) :: behaviour
 
-      is_smooth = any(behaviour == [error_load, error_smooth, error_pressure])
+      is_smooth = any(behaviour == [error_load, error_smooth, error_pressure, error_shear])
       if (behaviour == error_pressure) is_smooth = all([scene%lower%shape, scene%upper%shape] /= shape_profile)
    end function is_smooth
 

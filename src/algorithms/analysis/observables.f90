@@ -130,7 +130,7 @@ module mfv_observables
                                          'largest size of the shear traction'//over), &
                                 row_type('largest_shear_x', 'length', error_place, 'where it is: x'), &
                                 row_type('largest_shear_row', '1', error_none, row_meaning), &
-                                row_type('largest_slip_range', 'length', error_local, &
+                                row_type('largest_slip_range', 'length', error_smooth, &
                                          'largest range of the slip of a node at turning points in contact'//over), &
                                 row_type('largest_slip_range_x', 'length', error_place, 'where it is: x'), &
                                 row_type('smallest_stick_ratio', '1', error_stick, &

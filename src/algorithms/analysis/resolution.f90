@@ -59,7 +59,8 @@ contains
       unresolved = [unresolved, unresolved_type(trim(quantities), why//'; not resolved: '//list//'; '//remedy)]
    end subroutine add_unresolved
 
-   !> Whether an observable is among those that are not resolved, by its name or by that of a quantity or a group that it belongs to.
+   !> Whether an observable is among those that are not resolved, by its name or by that of a quantity or a group that it belongs
+   !> to.
    pure logical function is_unresolved(unresolved, name)
       type(unresolved_type), intent(in) :: unresolved(:)
       character(*), intent(in) :: name
@@ -278,7 +279,7 @@ contains
             remedy = "refine='edges' in &mesh, or "//remedy
       end associate
       call add_unresolved(unresolved, names(2:), text//' ('//to_text(width/interval, 2)//' intervals)', 'use '//remedy//' for '// &
-                          to_text(resolved_nodes)//' nodes in each slip zone')
+                          to_text(resolved_nodes)//' nodes in each')
 
    contains
 
