@@ -365,6 +365,24 @@ def test_wear_in_other_units_mirrored_and_upside_down(seed: int) -> None:
     assert np.max(first.state.wear_depth) > 0.0
 
 
+def test_the_mesh_grows_while_a_block_is_worn() -> None:
+    """Where MFV has chosen the mesh, the worn contact reaches its end in the middle of a block."""
+    areas = []
+    for nodes in (22, 24, 30):
+        disk = {"shear_modulus": 0.033, "poisson_ratio": 0.45}
+        result = mfv.Scene(
+            mfv.Body.hole(4.156e-3, **disk),
+            mfv.Body.disk(2.872e-3, **disk),
+            friction=mfv.Friction.coulomb(0.07),
+            wear=mfv.Wear(coefficient=601.0),
+            mesh=mfv.Mesh(nodes=nodes),
+            steps=[mfv.Step(normal_force=5.87e-8), mfv.Step(shift=1.818e-7), mfv.Step(shift=-1.818e-7, cycles=15)],
+        ).run(check=True)
+        areas.append(result.observables.worn_area)
+        assert (len(result.mesh.x) > nodes) == (nodes < 30) and result.certificate.largest < 1e-12
+    assert max(areas) < 1.05 * min(areas)
+
+
 def test_blocks_in_partial_slip_lose_little_wear() -> None:
     """Narrow slip zones: the worn area of blocks against that of single cycles, within twice the tolerance."""
 

@@ -18,9 +18,11 @@ GROUPS = 10
 def test_every_number_is_right_or_said_to_be_uncertain(group: int) -> None:
     seeds = SEEDS[group::GROUPS]
     found = {(seed, name) for seed in seeds for name in findings(record(seed))}
-    known = {(seed, name) for seed, name in known_findings() if seed in seeds}
-    assert found - known == set(), "new findings; python -m truth --shrink shows the smallest problems"
-    assert known - found == set(), "no longer findings: delete them from known_findings.txt (--update-known)"
+    known = {finding: reason for finding, reason in known_findings().items() if finding[0] in seeds}
+    assert found - set(known) == set(), "new findings; python -m truth --shrink shows the smallest problems"
+    # What round-off decides another machine may decide otherwise.
+    gone = {finding for finding in set(known) - found if "round-off" not in known[finding]}
+    assert gone == set(), "no longer findings: delete them from known_findings.txt (--update-known)"
 
 
 def test_known_findings_have_reasons_and_are_in_the_suite() -> None:

@@ -467,12 +467,14 @@ contains
       integer, intent(in) :: before, segments
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
+      real(wp), allocatable :: depth(:), skipped(:)
       integer :: turns
 
       turns = step%turns()
       associate (trial => self%trial, contact => self%contact)
          if (trial%settles) then
             trial%settles = .false.
+            call widen_with_zeros(trial%settling, contact%model%nodes())
             call wear_by(self, trial%settling, step, before, segments, observer, error)
             return
          end if
@@ -485,11 +487,15 @@ contains
          call note_block(self)
          call wear_by(self, max(trial%block%depth + trial%correction, -contact%state%worn), step, before, segments, observer, error)
          if (allocated(error)) return
-         call contact%state%skip(contact%model%width, work_of_wear(contact%model, trial%block%depth - trial%block%first &
-                                                                   + trial%correction))
+         ! The mesh may have grown meanwhile.
+         depth = trial%block%depth
+         skipped = trial%block%depth - trial%block%first + trial%correction
+         call widen_with_zeros(depth, contact%model%nodes())
+         call widen_with_zeros(skipped, contact%model%nodes())
+         call contact%state%skip(contact%model%width, work_of_wear(contact%model, skipped))
          associate (cycles => trial%block%cycles)
             if (cycles == 1 .and. trial%block%change > contact%model%scene%wear%tolerance) &
-               contact%state%coarsely_worn = contact%state%coarsely_worn + contact%model%force(trial%block%depth)
+               contact%state%coarsely_worn = contact%state%coarsely_worn + contact%model%force(depth)
             self%cycles_done = self%cycles_done + cycles - 1
             self%leg%number = self%leg%number + turns*(cycles - 1)
             self%cycles(self%cycle_count)%block = cycles
