@@ -266,7 +266,7 @@ def test_interrupted_error_estimate_keeps_the_result(tmp_path):
     process = subprocess.Popen(
         [PROGRAM, "--estimate", str(path)], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
-    wait_for_work(process, 1.15 * alone)
+    wait_for_work(process, 1.4 * alone)
     process.send_signal(signal.SIGINT)
     output, errors = process.communicate(timeout=60)
     with h5py.File(tmp_path / "long.h5") as result:
