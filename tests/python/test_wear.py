@@ -144,7 +144,6 @@ def test_wear_does_not_depend_on_the_row_where_the_cycle_starts() -> None:
         assert max(areas) == pytest.approx(min(areas), rel=1e-3 if "block" in wear else 0.05), wear
 
 
-@pytest.mark.parametrize("coefficient", [1.0e-7, 4.0e-6])
 @pytest.mark.parametrize(
     "loads",
     [
@@ -158,28 +157,29 @@ def test_wear_does_not_depend_on_the_row_where_the_cycle_starts() -> None:
     ],
     ids=["force", "coupling", "low", "phase", "rocking", "approach", "separation"],
 )
-def test_blocks_where_the_pressure_changes_within_the_cycle(coefficient: float, loads: dict[str, list[float]]) -> None:
+def test_blocks_where_the_pressure_changes_within_the_cycle(loads: dict[str, list[float]]) -> None:
     """100 cycles in blocks against single cycles: worn area and dissipation within 1.2 times the tolerance."""
-    exact = cycled(loads, nodes=61, cycles=100, coefficient=2.0 * coefficient, block=1)
+    coefficient = 8.0e-6
+    exact = cycled(loads, nodes=61, cycles=100, coefficient=coefficient, block=1)
     for tolerance in (0.05, 0.01):
-        blocks = cycled(loads, nodes=61, cycles=100, coefficient=2.0 * coefficient, tolerance=tolerance)
+        blocks = cycled(loads, nodes=61, cycles=100, coefficient=coefficient, tolerance=tolerance)
         assert len(blocks.cycles.block) < 60
         for name in ("worn_area", "dissipation"):
             limit = max(1.2 * tolerance, 0.02)
             assert blocks.observables[name] == pytest.approx(exact.observables[name], rel=limit), (name, tolerance)
         computed = np.sum(blocks.cycles.block * blocks.cycles.dissipation)
-        assert blocks.observables.worn_area == pytest.approx(2.0 * coefficient * computed, rel=0.1)
-        assert blocks.observables.worn_area == pytest.approx(2.0 * coefficient * blocks.observables.dissipation, rel=0.02)
+        assert blocks.observables.worn_area == pytest.approx(coefficient * computed, rel=0.1)
+        assert blocks.observables.worn_area == pytest.approx(coefficient * blocks.observables.dissipation, rel=0.02)
 
 
 @pytest.mark.parametrize("block", [None, 10])
 def test_wear_that_goes_on_is_not_steady(block: int | None) -> None:
     """The remaining wear must be within the tolerance, in long and in short blocks."""
     full, ended = (
-        cycled({"shift": [-0.02, 0.02]}, cycles=1000, law="archard", coefficient=1.0e-8, block=block, steady=steady)
+        cycled({"shift": [-0.02, 0.02]}, cycles=500, law="archard", coefficient=1.0e-8, block=block, steady=steady)
         for steady in (None, 1.0e-3)
     )
-    assert full.observables.cycles == 1000 == full.cycles.block.sum()
+    assert full.observables.cycles == 500 == full.cycles.block.sum()
     assert ended.observables.cycles == ended.cycles.block.sum()
     assert ended.observables.worn_area == pytest.approx(full.observables.worn_area, rel=1.1e-3)
 
