@@ -64,7 +64,7 @@ contains
       if (estimate%message == '') then
          estimate%coarser_nodes = nodes(2:)
          do place = 1, observable_count
-            if (observables(place)%error == error_none .or. any(ieee_is_nan(values(place, :)))) cycle
+            if (observables(place)%error == error_none .or. ieee_is_nan(values(place, 1))) cycle
             if (is_unresolved(unresolved, trim(observables(place)%name))) then
                estimate%bar(place) = unresolved_bar(values(place, :))
             else if (is_there(simulation%contact%model, place, values(place, :))) then
@@ -215,8 +215,9 @@ contains
       class(observer_type), intent(inout), target, optional :: observer
       type(relay_type) :: watch
       type(simulation_type) :: coarse
-      integer :: i
+      integer :: i, before
 
+      before = size(unresolved)
       allocate (values(observable_count, size(nodes)), allowances(observable_count, size(nodes)))
       call observables_of(simulation, values(:, 1))
       allowances(:, 1) = interval_allowances(simulation, values(:, 1))
@@ -235,10 +236,30 @@ contains
          allowances(:, i) = interval_allowances(coarse, values(:, i))
          if (estimate%doubt == '') estimate%doubt = trim(difference_of_meshes(simulation, coarse))
       end do
-      if (estimate%doubt == '') return
-      call add_unresolved(unresolved, all_quantities(simulation), estimate%doubt, 'use more nodes')
+      if (estimate%doubt /= '') then
+         call add_unresolved(unresolved, all_quantities(simulation), estimate%doubt, 'use more nodes')
+      else
+         call add_missing(values, unresolved)
+         if (size(unresolved) == before) return
+      end if
       estimate%doubt = unresolved(size(unresolved))%text
    end subroutine solve_coarser_meshes
+
+   !> Observables that are undefined on a coarser mesh are not resolved. `values`: as above.
+   subroutine add_missing(values, unresolved)
+      real(wp), intent(in) :: values(:, :)
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
+      character(:), allocatable :: names
+      integer :: place
+
+      names = ''
+      do place = 1, observable_count
+         if (observables(place)%error == error_none .or. ieee_is_nan(values(place, 1))) cycle
+         if (any(ieee_is_nan(values(place, :))) .and. .not. is_unresolved(unresolved, trim(observables(place)%name))) &
+            names = names//' '//trim(observables(place)%name)
+      end do
+      if (names /= '') call add_unresolved(unresolved, names(2:), 'undefined on a coarser mesh', 'use more nodes')
+   end subroutine add_missing
 
    !> Why a coarser mesh says nothing about the discretisation error of a simulation; empty if it does.
    function difference_of_meshes(simulation, coarse) result(why)
