@@ -14,9 +14,23 @@ module test_closed_form_cases
    implicit none
    private
    public :: random_case, random_numbers, kinds, kind_hertz, kind_punch, kind_cycle, kind_mindlin
+   public :: place_half_width, place_stick_ratio, place_peak_pressure, place_peak_shear, place_dissipation, place_lower_tension, &
+             place_upper_tension, place_cycle_dissipation, place_secant_stiffness, place_loss_factor
 
    !> The kind of a case is modulo(its number, kinds): one of these, or a cylinder pressed with friction.
    integer, parameter :: kinds = 6, kind_hertz = 0, kind_punch = 1, kind_cycle = 2, kind_mindlin = 3
+
+   !> Places of some observables in the list.
+   integer, parameter :: place_half_width = findloc(observables%name, 'contact_half_width', dim=1), &
+                         place_stick_ratio = findloc(observables%name, 'stick_ratio', dim=1), &
+                         place_peak_pressure = findloc(observables%name, 'peak_pressure', dim=1), &
+                         place_peak_shear = findloc(observables%name, 'peak_shear', dim=1), &
+                         place_dissipation = findloc(observables%name, 'dissipation', dim=1), &
+                         place_lower_tension = findloc(observables%name, 'lower_tension', dim=1), &
+                         place_upper_tension = findloc(observables%name, 'upper_tension', dim=1), &
+                         place_cycle_dissipation = findloc(observables%name, 'cycle_dissipation', dim=1), &
+                         place_secant_stiffness = findloc(observables%name, 'secant_stiffness', dim=1), &
+                         place_loss_factor = findloc(observables%name, 'loss_factor', dim=1)
 
 contains
 

@@ -101,7 +101,7 @@ def _change_signs(made: Problem, names: tuple[str, ...]) -> None:
 
 
 def in_pieces(problem: Problem) -> Problem | None:
-    """Every step without cycles in two, where the loads before it are known; None if there is none."""
+    """The problem with steps divided into two halves: those without cycles whose loads at the start are known. None if no step is."""
     made = problem.copy()
     made.groups = []
     known: dict[str, float] = dict.fromkeys(("normal_force", "tangential_force", "lower_bulk_stress", "upper_bulk_stress"), 0.0)

@@ -21,7 +21,7 @@ module mfv_discretisation_error
    use mfv_simulation, only: history_none, new_simulation, simulation_type, states_steps
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
-   use mfv_zone_edges, only: find_patches, find_zone_edges, largest_shear, patch_type, zone_edges_type, zones_of
+   use mfv_zone_edges, only: find_patches, largest_shear, patch_type, zones_of
    implicit none
    private
    public :: estimate_error, coarser_scene, scene_on_mesh, fix_cycles, nearest_mesh, allowances_of_behaviours, has_coarser_meshes
@@ -377,15 +377,13 @@ contains
       type(simulation_type), intent(in) :: simulation
       real(wp), intent(in) :: values(:)
       real(wp) :: allowances(observable_count), of_behaviour(0:error_place)
-      type(zone_edges_type) :: edges
       integer :: i
 
       of_behaviour = allowances_of_behaviours(simulation)
       allowances = of_behaviour(observables%error)
       associate (model => simulation%contact%model)
-         call find_zone_edges(model, simulation%contact%state, edges)
          where (observables%error == error_edges .and. observables%unit == '1') &
-            allowances = 2.0_wp*allowances/max(edges%contact_length, model%interval())
+            allowances = 2.0_wp*allowances/max(values(observable_place('contact_length')), model%interval())
          where (observables%name == 'contact_length') allowances = 2.0_wp*allowances
          do i = 1, observable_count
             if (observables(i)%error == error_place .and. .not. ieee_is_nan(values(i))) &

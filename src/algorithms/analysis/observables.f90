@@ -16,8 +16,6 @@ module mfv_observables
    private
    public :: observable_count, observables, observable_place, observables_of, error_none, error_load, error_smooth, error_edges, &
              error_stick, error_pressure, error_shear, error_local, error_place
-   public :: place_half_width, place_stick_ratio, place_peak_pressure, place_peak_shear, place_dissipation, place_lower_tension, &
-             place_upper_tension, place_cycle_dissipation, place_secant_stiffness, place_loss_factor
 
    !> How the discretisation error of an observable behaves: not estimated (counts, rows, and numbers with the relative errors of
    !> their factors); none where the load is prescribed; smooth; that of edges of the contact, of stick zones, of the peaks of
@@ -148,18 +146,6 @@ module mfv_observables
                                 row_type('largest_upper_von_mises_x', 'length', error_place, 'where it is: x'), &
                                 row_type('largest_upper_von_mises_y', 'length', error_place, 'where it is: y'), &
                                 row_type('largest_upper_von_mises_row', '1', error_none, row_meaning)]
-
-   !> Places of some observables in the list.
-   integer, parameter :: place_half_width = findloc(observables%name, 'contact_half_width', dim=1), &
-                         place_stick_ratio = findloc(observables%name, 'stick_ratio', dim=1), &
-                         place_peak_pressure = findloc(observables%name, 'peak_pressure', dim=1), &
-                         place_peak_shear = findloc(observables%name, 'peak_shear', dim=1), &
-                         place_dissipation = findloc(observables%name, 'dissipation', dim=1), &
-                         place_lower_tension = findloc(observables%name, 'lower_tension', dim=1), &
-                         place_upper_tension = findloc(observables%name, 'upper_tension', dim=1), &
-                         place_cycle_dissipation = findloc(observables%name, 'cycle_dissipation', dim=1), &
-                         place_secant_stiffness = findloc(observables%name, 'secant_stiffness', dim=1), &
-                         place_loss_factor = findloc(observables%name, 'loss_factor', dim=1)
 
 contains
 

@@ -33,7 +33,7 @@ module mfv_error_bar
       !> Intervals of the mesh and of the coarser meshes, finest first; as &mesh nodes.
       integer :: nodes = 0
       integer, allocatable :: coarser_nodes(:)
-      !> Of every observable, in their order (see mfv_observables); empty if there are none.
+      !> Of every observable, in their order (see mfv_observables).
       type(error_bar_type), allocatable :: bar(:)
    end type error_estimate_type
 

@@ -28,12 +28,12 @@ module mfv_simulation
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, MFV_INTERRUPTED, MFV_NO_CONTINUATION, MFV_SEPARATED
    use mfv_stress_search, only: largest_type
    use mfv_straight, only: apply_directly
-   use mfv_wear_block, only: find_wear_block, wear_block_type, work_of_wear
+   use mfv_wear_block, only: find_wear_block, wear_block_type, widened, work_of_wear
    use mfv_strings, only: to_text
    implicit none
    private
    public :: simulation_type, position_type, restart_type, trial_type, new_simulation, snapshot_type, sensitivity_type
-   public :: history_events, history_steps, history_none, widen_with_zeros
+   public :: history_events, history_steps, history_none
    public :: states_reversals, states_steps, states_none, states_last_cycle
    public :: mark_loading, mark_reversal, mark_return, mark_cycle_start, mark_yield, mark_of, mark_count
 
@@ -368,11 +368,10 @@ contains
       type(wear_block_type), intent(in) :: next
       real(wp), allocatable, intent(out) :: correction(:)
       real(wp), intent(out) :: error
-      real(wp), allocatable :: settling(:)
+      real(wp) :: settling(size(next%depth))
 
-      allocate (settling(0))
-      if (allocated(self%trial%settling)) settling = self%trial%settling
-      call widen_with_zeros(settling, size(next%depth))
+      settling = 0.0_wp
+      if (allocated(self%trial%settling)) settling = widened(self%trial%settling, size(settling))
       call self%trial%block%judge(settling, next%depth, self%contact%state%worn, self%contact%model%width, correction, error)
    end subroutine judge_block
 
@@ -474,24 +473,21 @@ contains
       associate (trial => self%trial, contact => self%contact)
          if (trial%settles) then
             trial%settles = .false.
-            call widen_with_zeros(trial%settling, contact%model%nodes())
-            call wear_by(self, trial%settling, step, before, segments, observer, error)
+            call wear_by(self, widened(trial%settling, contact%model%nodes()), step, before, segments, observer, error)
             return
          end if
          do
             call find_wear_block(contact, cycle_work(self), trial%cycles, most_worn_at_once(self, step), is_pressed(self), &
                                  trial%block)
             if (.not. contact%lengthens_for(trial%block%depth > 0.0_wp)) exit
-            call widen_with_zeros(trial%correction, contact%model%nodes())
+            trial%correction = widened(trial%correction, contact%model%nodes())
          end do
          call note_block(self)
          call wear_by(self, max(trial%block%depth + trial%correction, -contact%state%worn), step, before, segments, observer, error)
          if (allocated(error)) return
          ! The mesh may have grown meanwhile.
-         depth = trial%block%depth
-         skipped = trial%block%depth - trial%block%first + trial%correction
-         call widen_with_zeros(depth, contact%model%nodes())
-         call widen_with_zeros(skipped, contact%model%nodes())
+         depth = widened(trial%block%depth, contact%model%nodes())
+         skipped = widened(trial%block%depth - trial%block%first + trial%correction, contact%model%nodes())
          call contact%state%skip(contact%model%width, work_of_wear(contact%model, skipped))
          associate (cycles => trial%block%cycles)
             if (cycles == 1 .and. trial%block%change > contact%model%scene%wear%tolerance) &
@@ -526,16 +522,6 @@ contains
       end if
       call self%contact%end_wear()
    end subroutine wear_by
-
-   !> Extend the values of all nodes by zeros at either end to `nodes` values.
-   pure subroutine widen_with_zeros(values, nodes)
-      real(wp), allocatable, intent(inout) :: values(:)
-      integer, intent(in) :: nodes
-      integer :: i, extra
-
-      extra = (nodes - size(values))/2
-      values = [(0.0_wp, i=1, extra), values, (0.0_wp, i=1, extra)]
-   end subroutine widen_with_zeros
 
    !> Whether the cycles of a step have become steady. With wear also the change that the remaining cycles would make, each as much
    !> as those of this block, must be within the tolerance: that of the tractions, and that of the worn area relative to itself.

@@ -36,7 +36,7 @@ module mfv_wear_block
    use mfv_wear, only: wear_archard
    implicit none
    private
-   public :: wear_block_type, find_wear_block, work_of_wear
+   public :: wear_block_type, find_wear_block, widened, work_of_wear
 
    !> The problem of a block: nodes near the contact, their softness r/p per cycle, pressure p, gap without any pressure on them,
    !> arm and width, and the compliance between them; in terms of the modulus and the `length` of the mesh.
@@ -119,8 +119,8 @@ contains
 
       n = self%cycles
       extra = (size(next) - size(self%depth))/2
-      first = padded(self%first, extra)
-      depth = padded(self%depth, extra)
+      first = widened(self%first, size(next))
+      depth = widened(self%depth, size(next))
       memory = 0.0_wp
       allocate (correction(size(next)), source=0.0_wp)
       error = 0.0_wp
@@ -149,15 +149,17 @@ contains
       if (self%cycles == 1) correction = 0.0_wp
    end subroutine judge
 
-   !> Values with `extra` zeros at either end.
-   pure function padded(values, extra)
+   !> Values of all nodes of a mesh that has grown to `nodes` nodes: zeros at either end.
+   pure function widened(values, nodes)
       real(wp), intent(in) :: values(:)
-      integer, intent(in) :: extra
-      real(wp) :: padded(size(values) + 2*extra)
+      integer, intent(in) :: nodes
+      real(wp) :: widened(nodes)
 
-      padded = 0.0_wp
-      padded(extra + 1:extra + size(values)) = values
-   end function padded
+      widened = 0.0_wp
+      associate (extra => (nodes - size(values))/2)
+         widened(extra + 1:extra + size(values)) = values
+      end associate
+   end function widened
 
    !> Add to a depth of wear, length, shape (nodes), what the pressures of `active` nodes of the problem, which it changes, wear
    !> over `cycles` cycles; `node`: numbers of the nodes of the problem.

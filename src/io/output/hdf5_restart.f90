@@ -16,9 +16,10 @@ module mfv_hdf5_restart
    use mfv_node_status, only: node_creep_left, node_open
    use mfv_result_fields, only: along_nothing, field_type, list_type, step_group
    use mfv_scene, only: step_type
-   use mfv_simulation, only: mark_count, simulation_type, snapshot_type, trial_type, widen_with_zeros
+   use mfv_simulation, only: mark_count, simulation_type, snapshot_type, trial_type
    use mfv_status, only: MFV_INPUT_ERROR
    use mfv_strings, only: to_text
+   use mfv_wear_block, only: widened
    implicit none
    private
    public :: restart_group, restart_fields, read_restart
@@ -91,8 +92,7 @@ contains
       associate (trial => simulation%trial)
          allocate (copy%trial)
          copy%trial%cycles = trial%cycles
-         copy%trial%correction = trial%correction
-         call widen_with_zeros(copy%trial%correction, simulation%contact%model%nodes())
+         copy%trial%correction = widened(trial%correction, simulation%contact%model%nodes())
          if (.not. trial%is_worn) return
          copy%position_type = trial%position
          copy%leg = trial%leg
