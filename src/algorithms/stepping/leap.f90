@@ -235,11 +235,11 @@ contains
 
    !> The dissipation of a chain by its samples: by slopes, or node by node if that is exact. Its error is taken to be half the
    !> difference to the sum node by node, extrapolated at second order, but at least a sixth of that to the sum itself; twice as
-   !> much with two samples; with many at least a third of the change from half as many.
+   !> much with two samples; with more at least a third of the change from half as many (where the load passes a former reversal, rates
+   !> jump, and the sums converge at second order).
    subroutine weigh_samples(path, chain)
       class(contact_path_type), intent(in) :: path
       type(chain_type), intent(inout) :: chain
-      integer, parameter :: many = 8
       real(wp) :: by_nodes, coarse, error, few, coarse_works(motion_count)
 
       coarse = chain%by_slopes
@@ -250,7 +250,7 @@ contains
       few = merge(2.0_wp, 1.0_wp, ubound(chain%samples, 1) == 2)
       chain%work_error = max(few*abs(chain%by_slopes - by_nodes)/2.0_wp, &
                              few*abs(chain%by_slopes - chain%node_wise)/6.0_wp, error)
-      if (ubound(chain%samples, 1) >= max(many, 2*chain%increments)) &
+      if (ubound(chain%samples, 1) > chain%increments) &
          chain%work_error = max(chain%work_error, abs(chain%by_slopes - coarse)/3.0_wp)
       call prefer_node_wise(chain)
       if (ubound(chain%samples, 1) > chain%increments) &
