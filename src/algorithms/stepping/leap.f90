@@ -235,8 +235,8 @@ contains
 
    !> The dissipation of a chain by its samples: by slopes, or node by node if that is exact. Its error is taken to be half the
    !> difference to the sum node by node, extrapolated at second order, but at least a sixth of that to the sum itself; twice as
-   !> much with two samples; with more at least a third of the change from half as many (where the load passes a former reversal, rates
-   !> jump, and the sums converge at second order).
+   !> much with two samples; and at least a third of the change from half as many, or from the sum without rates (where the load passes
+   !> a former reversal, rates jump, and the sums converge at second order).
    subroutine weigh_samples(path, chain)
       class(contact_path_type), intent(in) :: path
       type(chain_type), intent(inout) :: chain
@@ -250,8 +250,7 @@ contains
       few = merge(2.0_wp, 1.0_wp, ubound(chain%samples, 1) == 2)
       chain%work_error = max(few*abs(chain%by_slopes - by_nodes)/2.0_wp, &
                              few*abs(chain%by_slopes - chain%node_wise)/6.0_wp, error)
-      if (ubound(chain%samples, 1) > chain%increments) &
-         chain%work_error = max(chain%work_error, abs(chain%by_slopes - coarse)/3.0_wp)
+      chain%work_error = max(chain%work_error, abs(chain%by_slopes - coarse)/3.0_wp)
       call prefer_node_wise(chain)
       if (ubound(chain%samples, 1) > chain%increments) &
          chain%motion_work_error = maxval(abs(chain%motion_work - coarse_works))/3.0_wp + abs(chain%work - chain%by_slopes)
@@ -477,6 +476,7 @@ contains
       real(wp) :: smooth, corners, difference, change, by_rates, error
 
       call chain_dissipation(path%model, finer%before(1)%fields, finer%after, finer%begins, finer%changes, smooth, corners)
+      finer%by_slopes = smooth
       difference = abs(smooth - finer%node_wise)
       finer%work = 0.5_wp*(max(smooth, 0.0_wp) + finer%node_wise)
       change = abs(finer%node_wise - coarser%node_wise)*(real(coarser%increments, wp)/finer%increments)**2
