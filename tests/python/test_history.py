@@ -318,6 +318,32 @@ def test_areas_by_large_increments_are_accurate_or_unknown(separates: bool) -> N
         assert quick.normal_force_work[-1] == pytest.approx(exact.normal_force_work[-1], abs=1e-2 * exact.dissipation[-1])
 
 
+@pytest.mark.parametrize(
+    "lower, upper, mu, normal, shears",
+    [
+        ((1.0, 0.0), (2.128, 0.3), 0.752, 1.607e-3, [9.536e-4, 3.652e-4, -6.601e-4, 1.026e-3, -7.878e-4]),
+        ((1.0, 0.3), (0.549, 0.3), 0.831, 1.758e-3, [-8.013e-4, 1.110e-3, -6.178e-4, -8.672e-4]),
+    ],
+)
+def test_large_increments_past_former_reversals(lower: Any, upper: Any, mu: float, normal: float, shears: list[float]) -> None:
+    """The rate of the dissipation jumps where the load passes a former reversal; the first case was off by four times the accuracy."""
+    bodies = [dict(zip(("youngs_modulus", "poisson_ratio"), values)) for values in (lower, upper)]
+
+    def dissipations(accuracy: float | None) -> Any:
+        scene = mfv.Scene(
+            mfv.Body.half_plane(**bodies[0]),
+            mfv.Body.disk(1.0, **bodies[1]),
+            friction=mfv.Friction.coulomb(mu),
+            mesh=mfv.Mesh(nodes=431),
+            solver=mfv.Solver(accuracy=accuracy),
+            steps=[mfv.Step(normal_force=normal), *(mfv.Step(tangential_force=shear) for shear in shears)],
+            output=mfv.Output(history="steps"),
+        )
+        return np.diff(scene.run(check=True).history.dissipation)
+
+    assert dissipations(3e-3)[1:] == pytest.approx(dissipations(None)[1:], rel=2 * 3e-3)
+
+
 def test_yield_at_turning_points_is_noticed_whether_or_not_they_are_saved() -> None:
     """The peak of the history yields, its ends do not."""
     body = mfv.Body.half_plane(youngs_modulus=74100, poisson_ratio=0.33, yield_strength=150)
