@@ -12,6 +12,7 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -71,6 +72,12 @@ void mfv_use_one_thread(void) {
 #endif
 
 #ifdef __ELF__
+static int memory_is_limited(void) {
+  struct rlimit addresses, data;
+  return getrlimit(RLIMIT_AS, &addresses) != 0 || addresses.rlim_cur != RLIM_INFINITY || getrlimit(RLIMIT_DATA, &data) != 0 ||
+         data.rlim_cur != RLIM_INFINITY;
+}
+
 #if defined(__GLIBC__) && defined(__LP64__) && defined(MADV_HUGEPAGE)
 /* Keep freed memory, and let the first of it lie in large pages: arrays along the nodes come and go, and new pages cost more than the
    arithmetic on them. Only addresses are reserved; not where these are limited. */
@@ -78,9 +85,7 @@ static void keep_memory(void) {
   enum { large_page = 1 << 21, reserve = 1 << 26, most_on_heap = 1 << 25, keep = 1 << 30, pad = 1 << 20, beginning = 1 << 18 };
   static char *volatile kept[2]; /* what lies before the first large page: neither used nor freed */
   size_t size;
-  struct rlimit addresses, data;
-  if (getrlimit(RLIMIT_AS, &addresses) != 0 || addresses.rlim_cur != RLIM_INFINITY) return;
-  if (getrlimit(RLIMIT_DATA, &data) != 0 || data.rlim_cur != RLIM_INFINITY) return;
+  if (memory_is_limited()) return;
   mallopt(M_MMAP_THRESHOLD, most_on_heap);
   mallopt(M_TRIM_THRESHOLD, keep);
   mallopt(M_TOP_PAD, reserve);
@@ -99,11 +104,25 @@ static void keep_memory(void) {}
 int H5dont_atexit(void);
 #endif
 
+/* OpenBLAS that is linked dynamically has started its threads before; each takes memory, and waits forever for what a limit denies
+   it. Begin again with one thread. */
+static void limit_threads(char **arguments) {
+  const char *threads = getenv("OPENBLAS_NUM_THREADS");
+  if (threads != NULL && strcmp(threads, "1") == 0) return;
+  setenv("OPENBLAS_NUM_THREADS", "1", 1);
+#ifdef __GLIBC__ /* it gives constructors the arguments */
+  if (memory_is_limited()) execv("/proc/self/exe", arguments);
+#else
+  (void)arguments;
+#endif
+}
+
 /* Before main, because OpenBLAS that is linked statically starts its threads, which spin for some milliseconds, there. HDF5 need not
    tidy up at the end: files are closed where they are written. */
-__attribute__((constructor(101))) static void start_process(void) {
+__attribute__((constructor(101))) static void start_process(int count, char **arguments) {
+  (void)count;
+  limit_threads(arguments);
   keep_memory();
-  setenv("OPENBLAS_NUM_THREADS", "1", 1);
 #ifdef MFV_STATIC_HDF5
   H5dont_atexit();
 #endif

@@ -385,7 +385,7 @@ def test_bad_input_ends_with_a_message(text, message, tmp_path):
             "case.nml: &step 2 tangential_force=8e-4 not reached: gross sliding: every contact node slips",
         ),
         (
-            "&mesh nodes=21, half_width=0.005 / &step normal_force=1e-3 /",
+            "&mesh nodes=21, half_width=0.001 / &step normal_force=1e-3 /",
             "mesh exceeded",
             "case.nml: &step 1 normal_force=0.001 not reached: the contact reached the end of the mesh",
         ),

@@ -123,7 +123,7 @@ contains
       integer :: circle
 
       nodes = scene%mesh%nodes
-      growing = .false.
+      growing = .not. (allocated(scene%mesh%ends) .or. scene%lower%shape == shape_matrix)
       if (allocated(scene%mesh%ends)) then
          nodes = size(scene%mesh%ends) - 1
          interval = (scene%mesh%ends(nodes + 1) - scene%mesh%ends(1))/nodes
@@ -132,7 +132,6 @@ contains
          interval = sum(scene%lower%width)/nodes
       else if (scene%mesh%whole_circle) then
          interval = 2.0_wp*pi*scene%arc_radius()/nodes
-         growing = .true.
          circle = nodes
          nodes = 2*ceiling(estimated_half_width(scene)/interval) + modulo(circle, 2)
          nodes = min(nodes, circle)
@@ -140,7 +139,6 @@ contains
          interval = 2.0_wp*scene%mesh%half_width/nodes
       else
          interval = 2.0_wp*estimated_half_width(scene)/nodes
-         growing = .true.
          if (needs_equal_intervals(scene)) interval = 2.0_wp*pi*scene%arc_radius()/circle_intervals(scene%arc_radius(), interval)
       end if
    end subroutine choose_mesh
@@ -449,13 +447,16 @@ contains
                     .or. contact(n) .and. self%scene%touchable(self%arc(n) + self%width(n))
    end function reaches_end
 
-   !> Number of nodes that can still be added at either end; limited on a circle.
+   !> Number of nodes that can still be added at either end; limited on a circle, and where `half_width` is given, which is then far
+   !> from the contact by mistake.
    pure integer function spare_nodes(self)
       class(contact_model_type), intent(in) :: self
+      integer, parameter :: longest = 4
 
       spare_nodes = huge(1)
+      if (self%scene%mesh%half_width > 0.0_wp) spare_nodes = max(0, (longest*self%scene%mesh%nodes - self%nodes())/2)
       if (self%scene%arc_radius() > 0.0_wp) &
-         spare_nodes = max(0, (circle_intervals(self%scene%arc_radius(), self%interval()) - self%nodes())/2)
+         spare_nodes = min(spare_nodes, max(0, (circle_intervals(self%scene%arc_radius(), self%interval()) - self%nodes())/2))
    end function spare_nodes
 
    !> Lengthen the mesh by `extra` nodes at either end, with the same intervals.

@@ -96,8 +96,8 @@ module mfv_scene
    !> Mesh settings of the user; what is not set is chosen from an estimate of the contact.
    type :: mesh_request_type
       integer :: nodes = usual_nodes
-      !> Nodes are the centres of equal intervals over [-half_width, half_width], length along the surface; 0: chosen, and
-      !> increased when the contact requires it.
+      !> Nodes are the centres of equal intervals over [-half_width, half_width], length along the surface; 0: chosen. Increased
+      !> when the contact requires it.
       real(wp) :: half_width = 0.0_wp
       !> Ends of unequal intervals, increasing arc lengths from the origin of x, shape (nodes + 1); unallocated for equal ones.
       real(wp), allocatable :: ends(:)

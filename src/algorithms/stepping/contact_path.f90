@@ -829,9 +829,13 @@ contains
       class(contact_path_type), intent(inout) :: self
       type(iteration_type), intent(inout) :: iteration
       type(error_type), allocatable, intent(out) :: error
+      logical :: too_short
 
       if (.not. self%model%reaches_end(in_contact(self%state%status))) return
-      if (self%model%growing) then
+      associate (model => self%model)
+         too_short = .not. model%growing .or. (model%spare_nodes() == 0 .and. model%scene%mesh%half_width > 0.0_wp)
+      end associate
+      if (.not. too_short) then
          call self%widen(iteration)
       else
          call self%end_here(MFV_MESH_EXCEEDED, 'the contact reached the end of the mesh, '// &
