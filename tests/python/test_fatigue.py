@@ -226,7 +226,7 @@ def test_parameters_of_the_material_test_give_its_life() -> None:
     for factor in (0.0, 0.3, 1.0, 4.0):
         limits = {"yield_strength": 465.0, "k": factor}
         found = fatigue.fatemi_socie(cycle, **limits).maximum.value
-        assert fatigue.life(found, lambda n: elastic.fatemi_socie(n, **limits)) == pytest.approx(cycles, rel=1e-6)
+        assert fatigue.life(found, lambda n, limits=limits: elastic.fatemi_socie(n, **limits)) == pytest.approx(cycles, rel=1e-6)
 
 
 @pytest.mark.parametrize("cycles", [1e2, 1e4, 1e7])
@@ -350,7 +350,7 @@ def damage_by_levels(shear: np.ndarray, normal: np.ndarray) -> float:
     path, around = np.interp(fine, time, loads), np.interp(fine, time, stress)
     while len(turns) > 2:
         if len(turns) == 3:
-            begin, turn, end = 0, turns[1], len(fine) - 1
+            begin, turn = 0, turns[1]
             taken = (1,)
             during = around
         else:
@@ -361,7 +361,7 @@ def damage_by_levels(shear: np.ndarray, normal: np.ndarray) -> float:
             closed = after & ((path - loads[begin]) * np.sign(loads[turn] - loads[begin]) <= 0.0)
             during = around[(fine >= begin) & (fine <= fine[closed][0])]
             taken = (smallest, smallest + 1)
-        value = 0.5 * abs(loads[turn] - loads[turns[0] if len(turns) == 3 else begin]) + 0.3 * np.max(during)
+        value = 0.5 * abs(loads[turn] - loads[begin]) + 0.3 * np.max(during)
         damage += (max(value, 0.0) / FINDLEY_STRENGTH) ** 10
         turns = [one for place, one in enumerate(turns) if place not in taken]
     return damage

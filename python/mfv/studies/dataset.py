@@ -175,7 +175,10 @@ def flagged(table: xarray.Dataset, name: str) -> xarray.DataArray:
     def is_flagged(warnings: str, unresolved: str) -> bool:
         return name in unresolved.split() or any(NOT_RESOLVED not in one for one in warnings.split(BETWEEN) if one)
 
-    return xarray.apply_ufunc(is_flagged, table["warnings"], table[UNRESOLVED], vectorize=True, output_dtypes=[bool])
+    found: xarray.DataArray = xarray.apply_ufunc(
+        is_flagged, table["warnings"], table[UNRESOLVED], vectorize=True, output_dtypes=[bool]
+    )
+    return found
 
 
 def _errors(study: Study, solved: Sequence[Solved]) -> list[tuple[str, list[Any], str, str]]:

@@ -39,11 +39,11 @@ def lines(table: xarray.Dataset, column: str | None = None, over: str | None = N
     """
     dimensions = table["case"].dims
     numeric = [
-        name
+        str(name)
         for name, values in table.variables.items()
         if values.ndim == 1 and values.dtype.kind in "biuf" and set(values.dims) <= set(dimensions)
     ]
-    columns = [name for name in table.data_vars if table[name].dims == dimensions and table[name].dtype.kind in "biuf"]
+    columns = [str(name) for name in table.data_vars if table[name].dims == dimensions and table[name].dtype.kind in "biuf"]
     varied = [name for name in numeric if name in table.coords]
     name = _chosen(column, columns, [one for one in USUAL if one in columns and _varies(table[one])], "column")
     usual = sorted(varied, key=lambda one: table[one].size, reverse=True)
@@ -60,7 +60,7 @@ def lines(table: xarray.Dataset, column: str | None = None, over: str | None = N
     doubtful = flagged(table, name)
     colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.85, max(count, 1)))
     for number, places in enumerate(np.ndindex(*(table.sizes[one] for one in others))):
-        here = dict(zip(others, places))
+        here = dict(zip(map(str, others), places))
         row = table.isel(here).isel({dimension: order})
         x, y, is_hollow = row[along].values, row[name].values, doubtful.isel(here).values[order]
         colour = colours[number]
