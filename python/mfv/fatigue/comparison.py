@@ -150,7 +150,7 @@ def template() -> str:
     """A table of tests to fill in: its columns explained, and one row that is invented and says so."""
     lines = ["# Fretting-fatigue tests for 'mfv fatigue'. Columns (units are fixed; lines that begin with # are comments):"]
     for name, column in COLUMNS.items():
-        lines.append(f"# {label(name)}: {column.meaning}" + (" (may be left out)" if column.default is not None else ""))
+        lines.append(f"# {label(name)}: {column.meaning}" + (" (optional)" if column.default is not None else ""))
     return "\n".join([*lines, ",".join(map(label, COLUMNS)), ",".join(column.example for column in COLUMNS.values()), ""])
 
 

@@ -20,9 +20,14 @@ Curve = Callable[[Any], Any]
 #: Longest life that is computed; beyond it a life is infinite.
 LONGEST_LIFE = 1.0e12
 
-#: Planes of the first search, over half a turn, and tilts over a quarter; up to so many that have more than this fraction of its largest
-#: damage are refined, and are so far apart [radians]; angles are found to the last number [radians].
-ANGLES, TILTS, REFINED, PROMISING, APART, PLANE_TOLERANCE = 36, 7, 5, 0.5, 0.2, 1.0e-4
+#: Planes of the first search: angles over half a turn, and tilts over a quarter.
+ANGLES, TILTS = 36, 7
+
+#: The number of planes that are refined, with more than this fraction of the largest damage, at this distance from each other [radians].
+REFINED, PROMISING, APART = 5, 0.5, 0.2
+
+#: Angles are found to this [radians].
+PLANE_TOLERANCE = 1.0e-4
 
 #: Points of a curve, in place of its inverse, in the search for the plane.
 TABULATED = 241

@@ -39,8 +39,8 @@ if TYPE_CHECKING:
     import xarray
 
 #: Columns of every study and dimensions of fields; axes cannot have these names.
-TAKEN = ("case", "base", "outcome", "status", "message", "warnings", "unresolved", "error_estimate", "steps_done", "events", "linear_solves", "nodes", "largest_residual",
-         "row", "node", "record", "cycle", "patch", "companion_node", "result_file")  # fmt: skip
+TAKEN = ("case", "base", "outcome", "status", "message", "warnings", "unresolved", "error_estimate", "steps_done", "events",
+         "linear_solves", "nodes", "largest_residual", "row", "node", "record", "cycle", "patch", "companion_node", "result_file")  # fmt: skip
 
 #: Key of a case for error bars.
 ERROR_ESTIMATE = "output%error_estimate"
