@@ -765,4 +765,7 @@ def test_picture_of_a_map(side: float) -> None:
     line = np.diff(ax.lines[0].get_xydata(), axis=0)[0]
     assert line[1] * side > 0.0 and line[0] / line[1] == pytest.approx(-np.tan(np.radians(30.0)))
     assert ax.get_title() == "Findley: 2.5 at (0, 0), 30\N{DEGREE SIGN}"
+    tilted = fatigue.ParameterMap("Findley", x, y, values, angle, np.full(x.shape, np.radians(20.0)))
+    ax = mfv.plot.parameter_contours(tilted, pyplot.figure().subplots())
+    assert ax.get_title().endswith("30\N{DEGREE SIGN}, tilted 20\N{DEGREE SIGN} out of the plane")
     pyplot.close("all")
