@@ -141,6 +141,8 @@ def test_bands_and_run_outs_are_counted():
         ({"tangential_force": 80}, "tangential_force=80 is not below the sliding limit mu P = 70 N/mm"),
         ({"normal_force": ""}, "needs normal_force or peak_pressure"),
         ({"peak_pressure": 200}, "normal_force=100 and peak_pressure=200 contradict each other"),
+        ({"shear_ratio": 1.2}, "shear_ratio=1.2: must be at most 1, the smallest over the largest tangential_force"),
+        ({"bulk_ratio": 10}, "bulk_ratio=10: must be at most 1, the smallest over the largest bulk_stress"),
         ({"torsion_ratio": 0.4}, "torsion_ratio=0.4: must be at least 0.5 and less than 1"),
     ],
 )

@@ -231,6 +231,9 @@ def _test(where: str, names: Sequence[str], row: Sequence[str], separator: str) 
         raise input_error(
             f"{where}: tangential_force={values['tangential_force']:g} is not below the sliding limit mu P = {limit:.4g} N/mm"
         )
+    for name, largest in (("shear_ratio", "tangential_force"), ("bulk_ratio", "bulk_stress")):
+        if values[name] > 1.0 and values[largest] >= 0.0:
+            raise input_error(f"{where}: {name}={values[name]:g}: must be at most 1, the smallest over the largest {largest}")
     if not 0.5 <= values["torsion_ratio"] < 1.0:
         raise input_error(f"{where}: torsion_ratio={values['torsion_ratio']:g}: must be at least 0.5 and less than 1")
     return PadTest(values, where, notes)
