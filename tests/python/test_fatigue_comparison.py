@@ -104,8 +104,8 @@ def test_the_parameter_that_made_the_lives_is_found(series):
         for one, life in zip(series, lives)
     ]
     said = statement(tests)
-    assert "Within a factor of 2 of all 3 failed tests and all 3 run-outs: Fatemi-Socie (point)" in said
-    assert "hot spot" not in said and said.endswith("3 failed tests are too few to prefer one.")
+    assert "Within a factor of 2 of all (3 failed tests and 3 run-outs): Fatemi-Socie (point)" in said
+    assert "hot spot" not in said and said.endswith("Fewer than 5 failed tests are too few to prefer one.")
     best = judge(tests)[0]
     assert best.within == (3, 3) and best.run_outs == 3 and best.worst < 2.0
 
@@ -124,9 +124,9 @@ def test_bands_and_run_outs_are_counted():
     verdict = judge([*failed, *run_outs])[0]
     assert verdict.within == (3, 5) and verdict.run_outs == 1 and verdict.median == pytest.approx(1.45) and verdict.worst == 7.0
     said = statement([*failed, *run_outs])
-    assert "None is within a factor of 5 of all 6 failed tests and all 2 run-outs" in said
-    assert "within a factor of 7 and 1 run-outs predicted to fail" in said and "too few" not in said
-    assert "Within a factor of 5 of all 5 failed tests:" in statement(failed[:5])
+    assert "None is within a factor of 5 of all (6 failed tests and 2 run-outs)" in said
+    assert "within a factor of 7; it predicts failure of 1 run-out." in said and "too few" not in said
+    assert "Within a factor of 5 of all (5 failed tests):" in statement(failed[:5])
 
 
 @pytest.mark.parametrize(

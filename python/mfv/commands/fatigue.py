@@ -73,7 +73,7 @@ def run(options: argparse.Namespace) -> None:
 
 def report(predictions: Sequence[Prediction]) -> str:
     """Every test, every parameter at every place, and which fits."""
-    from ..fatigue.comparison import FACTORS, PARAMETERS, PLACES, judge, statement
+    from ..fatigue.comparison import FACTORS, PARAMETERS, PLACES, judge, numbered, statement
 
     width = max(len(str(one.test["test"])) for one in predictions) + 10
     lines = []
@@ -91,7 +91,7 @@ def report(predictions: Sequence[Prediction]) -> str:
         failed = sum(bool(one.test["failed"]) for one in counted)
         bands = ", ".join(f"{factor:g}" for factor in FACTORS)
         lines += [
-            f"{failed} failed tests: number within factors of {bands}; median of predicted over measured life; largest factor"
+            f"{numbered(failed, 'failed test')}: number within factors of {bands}; median of predicted over measured life; largest factor"
         ]
         lines += [f"{'':22}" + "".join(f"{place:>28}" for place in PLACES)]
         found = {(one.parameter, one.place): one for one in judge(predictions)}
@@ -101,7 +101,7 @@ def report(predictions: Sequence[Prediction]) -> str:
             lines.append(f"{parameter:22}" + "".join(f"{cell:>28}" for cell in cells))
         run_outs = len(counted) - failed
         if run_outs:
-            lines += ["", f"{run_outs} run-outs: number with a predicted life of at least the test"]
+            lines += ["", f"{numbered(run_outs, 'run-out')}: number with a predicted life of at least the test"]
             for parameter in PARAMETERS:
                 lines.append(f"{parameter:22}" + "".join(f"{found[parameter, place].run_outs:28}" for place in PLACES))
         lines.append("")

@@ -373,23 +373,27 @@ def statement(predictions: Sequence[Prediction]) -> str:
     if not failed:
         return "Nothing to judge by: no row is a failed test that somebody has measured."
     verdicts = judge(predictions)
-    every = f"all {failed} failed tests and all {run_outs} run-outs" if run_outs else f"all {failed} failed tests"
-    text = ""
+    every = numbered(failed, "failed test") + (f" and {numbered(run_outs, 'run-out')}" if run_outs else "")
     for place, factor in enumerate(FACTORS):
         fits = [one for one in verdicts if one.within[place] == failed and one.run_outs == run_outs]
         if fits:
-            text = f"Within a factor of {factor:g} of {every}: {', '.join(f'{one.parameter} ({one.place})' for one in fits)}."
+            text = f"Within a factor of {factor:g} of all ({every}): {', '.join(f'{one.parameter} ({one.place})' for one in fits)}."
             break
     else:
         best = min(verdicts, key=lambda one: (one.run_outs < run_outs, one.worst))
-        missed = f" and {run_outs - best.run_outs} run-outs predicted to fail" if best.run_outs < run_outs else ""
+        missed = f"; it predicts failure of {numbered(run_outs - best.run_outs, 'run-out')}" if best.run_outs < run_outs else ""
         text = (
-            f"None is within a factor of {FACTORS[-1]:g} of {every}. The nearest is {best.parameter} ({best.place}), within a factor of "
+            f"None is within a factor of {FACTORS[-1]:g} of all ({every}). The nearest is {best.parameter} ({best.place}), within a factor of "
             f"{best.worst:.3g}{missed}."
         )
     if failed < FEWEST:
-        text += f" {failed} failed tests are too few to prefer one."
+        text += f" Fewer than {FEWEST} failed tests are too few to prefer one."
     return text
+
+
+def numbered(number: int, name: str) -> str:
+    """A number of things: 1 run-out, 2 run-outs."""
+    return f"{number} {name}{'' if number == 1 else 's'}"
 
 
 def figure(predictions: Sequence[Prediction]) -> Figure:
