@@ -24,7 +24,7 @@ LONGEST_LIFE = 1.0e12
 ANGLES, TILTS = 36, 7
 
 #: The number of planes that are refined, with more than this fraction of the largest damage, at this distance from each other [radians].
-REFINED, PROMISING, APART = 5, 0.5, 0.2
+REFINED, PROMISING, APART = 3, 0.5, 0.2
 
 #: Angles are found to this [radians].
 PLANE_TOLERANCE = 1.0e-4
