@@ -41,8 +41,6 @@ for example in joint_models hosts/joint_host; do
     "$venv/bin/python" "$root/examples/$example.py" -o "$pictures/${example#hosts/}.png"
 done
 PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so "$venv/bin/python" "$root/examples/identification.py" -o "$pictures/identify.png"
-PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so "$venv/bin/python" "$root/examples/fretting_lives.py" \
-  -o "$pictures/fretting_lives.png" >/dev/null
 # Fatigue parameters below a pad.
 PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so "$venv/bin/python" - "$root/examples/fretting_fatigue.nml" "$pictures" <<'END'
 import sys

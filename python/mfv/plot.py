@@ -298,6 +298,8 @@ def parameter_contours(field: ParameterMap, ax: Axes | None = None, *, colour_ba
         into_body = -1.0 if ends[1, 1] > 0.0 and np.mean(field.y) < peak.y else 1.0
         ax.plot(peak.x + into_body * ends[:, 0], peak.y + into_body * ends[:, 1], color="white", linewidth=1.5)
     angle = f", {np.degrees(peak.angle) + 0.0:.0f}\N{DEGREE SIGN}" if np.isfinite(peak.angle) else ""
+    if peak.tilt > 1.0e-2:  # not by round-off
+        angle += f", tilted {np.degrees(peak.tilt):.0f}\N{DEGREE SIGN} out of the plane"
     ax.plot(peak.x, peak.y, "x", color="white", markersize=7, clip_on=False, zorder=5)
     ax.set_title(f"{field.name}: {peak.value:.4g} at ({_signed(peak.x)}, {_signed(peak.y)}){angle}", fontsize=10)
     ax.set_aspect("equal")

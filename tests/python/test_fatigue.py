@@ -1,6 +1,5 @@
 """Fatigue parameters, critical distances, lives and short cracks against closed forms and other algorithms."""
 
-import runpy
 from pathlib import Path
 
 import numpy as np
@@ -224,9 +223,24 @@ def test_parameters_of_the_material_test_give_its_life() -> None:
     }
     for found, curve in values.values():
         assert fatigue.life(found.maximum.value, curve) == pytest.approx(cycles, rel=1e-6)
-    # The curve of Fatemi and Socie is that of the plane at 45 degrees; the largest value is on another plane if k > 0.
-    found = fatigue.fatemi_socie(cycle, yield_strength=465.0, k=0.0).maximum.value
-    assert fatigue.life(found, lambda n: elastic.fatemi_socie(n, yield_strength=465.0, k=0.0)) == pytest.approx(cycles, rel=1e-6)
+    for factor in (0.0, 0.3, 1.0, 4.0):
+        limits = {"yield_strength": 465.0, "k": factor}
+        found = fatigue.fatemi_socie(cycle, **limits).maximum.value
+        assert fatigue.life(found, lambda n, limits=limits: elastic.fatemi_socie(n, **limits)) == pytest.approx(cycles, rel=1e-6)
+
+
+@pytest.mark.parametrize("cycles", [1e2, 1e4, 1e7])
+def test_fatemi_socie_of_the_material_test(cycles: float) -> None:
+    """Strains, plastic ones included, and stresses of the test as tensors, on planes of all angles."""
+    stress, plastic = float(MATERIAL.stress_amplitude(cycles)), float(MATERIAL.plastic_strain(cycles))
+    strain = np.diag([stress / E + plastic, *[-NU * stress / E - 0.5 * plastic] * 2])
+    angle = np.linspace(0.0, 0.5 * np.pi, 20001)
+    normal, along = np.stack([np.cos(angle), np.sin(angle), 0.0 * angle]), np.stack([-np.sin(angle), np.cos(angle), 0.0 * angle])
+    shear = 2.0 * np.abs(np.einsum("in,ij,jn->n", normal, strain, along))
+    tension = stress * normal[0] ** 2
+    for k in (0.0, 0.5, 1.0):
+        expected = np.max(shear * (1.0 + k * tension / 465.0))
+        assert MATERIAL.fatemi_socie(cycles, yield_strength=465.0, k=k) == pytest.approx(expected, rel=1e-7)
 
 
 def test_basquin_is_the_woehler_curve_of_pylife() -> None:
@@ -257,6 +271,157 @@ def test_damage_of_two_blocks_adds_up() -> None:
         fatigue.smith_watson_topper_damage(
             fatigue.StressCycle(np.zeros(2), np.zeros(2), np.zeros((2, 2, 4)), G, NU), lambda n: 1 / n
         )
+
+
+def test_damages_of_two_blocks_add_up() -> None:
+    """As above, by Findley and by Fatemi and Socie: of pulsating tension the plane is the same for both amplitudes if it does not depend on them."""
+    cycle = history(xx=[300.0, 0.0, 200.0, 0.0])
+    k = 0.3
+    curve = FINDLEY_CURVE
+    damage = fatigue.findley_damage(cycle, curve, k=k)
+    # s/4 sin(u) + k s/2 (1 + cos(u)) is largest at tan(u) = 1/(2 k).
+    both = [fatigue.life(0.5 * s * (k + np.hypot(0.5, k)), curve) for s in (300.0, 200.0)]
+    assert damage.value == pytest.approx(sum(1.0 / n for n in both), rel=1e-6)
+    damage = fatigue.fatemi_socie_damage(cycle, MATERIAL.smith_watson_topper, yield_strength=465.0, k=0.0)
+    both = [fatigue.life(0.25 * s / G, MATERIAL.smith_watson_topper) for s in (300.0, 200.0)]
+    assert damage.value == pytest.approx(sum(1.0 / n for n in both), rel=1e-6)
+
+
+#: A power law whose inverse is (FINDLEY_STRENGTH/value)^10.
+FINDLEY_STRENGTH = 600.0
+
+
+def FINDLEY_CURVE(cycles: float) -> float:
+    return FINDLEY_STRENGTH * cycles**-0.1
+
+
+@pytest.mark.parametrize("lateral", [0.0, NU], ids=["plane stress", "plane strain"])
+def test_damage_of_a_cycle_out_of_phase_is_its_life(lateral: float) -> None:
+    """On the critical plane the path is one cycle along its longest chord; the largest normal stress is between its ends."""
+    turn = 2.0 * np.pi * np.arange(12) / 12
+    xx, yy, xy = 200.0 * np.sin(turn) + 50.0, 90.0 * np.sin(turn + 0.4), 60.0 * np.sin(turn + 1.3)
+    cycle = history(xx=xx, yy=yy, xy=xy, zz=lateral * (xx + yy))
+    limits = {"yield_strength": 465.0, "k": 1.0}
+    for damage, value, curve in (
+        (fatigue.findley_damage(cycle, FINDLEY_CURVE, k=0.3), fatigue.findley(cycle, k=0.3), FINDLEY_CURVE),
+        (
+            fatigue.fatemi_socie_damage(cycle, lambda n: MATERIAL.fatemi_socie(n, **limits), **limits),
+            fatigue.fatemi_socie(cycle, **limits),
+            lambda n: MATERIAL.fatemi_socie(n, **limits),
+        ),
+    ):
+        peak = value.maximum
+        # Damage of a power is largest where the parameter is; rainflow may add small cycles.
+        assert 1.0 / damage.value == pytest.approx(fatigue.life(peak.value, curve), rel=1e-4)
+        assert damage.angle == pytest.approx(peak.angle, abs=5e-3) and damage.tilt == pytest.approx(peak.tilt, abs=5e-3)
+
+
+@pytest.mark.parametrize("seed, lateral", [(0, 0.0), (1, NU)])
+def test_damage_of_a_random_history_against_all_planes(seed: int, lateral: float) -> None:
+    """Findley's damage is at least that of any plane and direction of a grid, and no more than the grid can miss."""
+    random = np.random.default_rng(seed)
+    stress = 100.0 * random.normal(size=(8, 4)) + 50.0
+    stress[:, 3] = lateral * (stress[:, 0] + stress[:, 1])
+    damage = fatigue.findley_damage(fatigue.StressCycle(0.0, 0.0, stress, G, NU), FINDLEY_CURVE, k=0.3)
+    tensor = tensors(stress)
+    most = 0.0
+    for angle in np.pi * np.arange(24) / 24:
+        for tilt in 0.5 * np.pi * np.arange(7) / 6:
+            normal = np.array([np.cos(tilt) * np.cos(angle), np.cos(tilt) * np.sin(angle), np.sin(tilt)])
+            first = np.array([-np.sin(angle), np.cos(angle), 0.0])
+            second = np.cross(normal, first)
+            for turn in np.pi * np.arange(6) / 6:
+                shear = tensor @ normal @ (np.cos(turn) * first + np.sin(turn) * second)
+                most = max(most, damage_by_levels(shear, tensor @ normal @ normal))
+    assert most * (1.0 - 1e-6) <= damage.value < 1.1 * most
+
+
+def damage_by_levels(shear: np.ndarray, normal: np.ndarray) -> float:
+    """Findley's damage of a repeated history: cycles by taking out the smallest range until two states are left, each with the largest
+    normal stress while it lasts, on a fine polyline of the history."""
+    start = int(np.argmax(shear))
+    loads, stress = (np.append(np.roll(one, -start), one[start]) for one in (shear, normal))
+    time = np.arange(loads.size)
+    inner = [i for i in range(1, loads.size - 1) if (loads[i] - loads[i - 1]) * (loads[i + 1] - loads[i]) < 0.0]
+    turns = [0, *inner, loads.size - 1]
+    damage = 0.0
+    fine = np.linspace(0.0, time[-1], 4000)
+    fine = np.union1d(fine, time)
+    path, around = np.interp(fine, time, loads), np.interp(fine, time, stress)
+    while len(turns) > 2:
+        if len(turns) == 3:
+            begin, turn = 0, turns[1]
+            taken = (1,)
+            during = around
+        else:
+            ranges = [abs(loads[turns[i + 1]] - loads[turns[i]]) for i in range(1, len(turns) - 2)]
+            smallest = int(np.argmin(ranges)) + 1
+            begin, turn = turns[smallest], turns[smallest + 1]
+            after = fine > turn
+            closed = after & ((path - loads[begin]) * np.sign(loads[turn] - loads[begin]) <= 0.0)
+            during = around[(fine >= begin) & (fine <= fine[closed][0])]
+            taken = (smallest, smallest + 1)
+        value = 0.5 * abs(loads[turn] - loads[begin]) + 0.3 * np.max(during)
+        damage += (max(value, 0.0) / FINDLEY_STRENGTH) ** 10
+        turns = [one for place, one in enumerate(turns) if place not in taken]
+    return damage
+
+
+def tensors(stress: np.ndarray) -> np.ndarray:
+    """Stress tensors, shape (states, 3, 3), of the components of a cycle."""
+    xx, yy, xy, zz = stress.T
+    zero = 0.0 * xx
+    return np.moveaxis(np.array([[xx, xy, zero], [xy, yy, zero], [zero, zero, zz]]), -1, 0)
+
+
+def test_equal_tension_in_two_directions_has_its_critical_plane_out_of_the_model() -> None:
+    """Pulsating equibiaxial tension in plane stress: no plane perpendicular to the model has shear. Closed form of Findley."""
+    k, s = 0.3, 200.0
+    found = fatigue.findley(history(xx=[0.0, s], yy=[0.0, s]), k=k).maximum
+    assert found.value == pytest.approx(0.5 * s * (k + np.hypot(0.5, k)), rel=1e-8)
+    assert found.tilt == pytest.approx(0.5 * np.arctan(0.5 / k), abs=1e-4)
+    strain = fatigue.fatemi_socie(history(xx=[0.0, s], yy=[0.0, s]), yield_strength=465.0, k=0.0).maximum
+    assert strain.value == pytest.approx(0.25 * s / G, rel=1e-8) and strain.tilt == pytest.approx(0.25 * np.pi, abs=1e-4)
+
+
+@pytest.mark.parametrize("lateral", [0.0, NU, None], ids=["plane stress", "plane strain", "any"])
+def test_critical_planes_against_a_search_over_the_sphere(lateral: float | None) -> None:
+    """Random cycles on planes with random normals, the best of them refined; the shear amplitude by all pairs of states."""
+    random = np.random.default_rng(5)
+    normals = random.normal(size=(4000, 3))
+    stress = 150.0 * random.normal(size=(5, 6, 4)) + 80.0
+    if lateral is not None:
+        stress[..., 3] = lateral * (stress[..., 0] + stress[..., 1])
+    cycles = fatigue.StressCycle(np.zeros(6), np.zeros(6), stress, G, NU)
+    parameters = {
+        "Findley": (fatigue.findley(cycles, k=0.3), lambda shear, normal: shear + 0.3 * normal),
+        "Fatemi-Socie": (
+            fatigue.fatemi_socie(cycles, yield_strength=465.0),
+            lambda shear, normal: shear / G * (1.0 + np.maximum(normal, 0.0) / 465.0),
+        ),
+    }
+    for place in range(6):
+        tensor = tensors(stress[:, place])
+
+        def on_sphere(vectors: np.ndarray, tensor: np.ndarray = tensor) -> tuple[np.ndarray, np.ndarray]:
+            """Shear amplitude and largest normal stress."""
+            unit = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+            traction = np.einsum("sij,nj->nsi", tensor, unit)
+            normal = np.einsum("nsi,ni->ns", traction, unit)
+            shear = traction - normal[..., None] * unit[:, None]
+            return 0.5 * np.linalg.norm(shear[:, :, None] - shear[:, None], axis=-1).max(axis=(1, 2)), normal.max(axis=1)
+
+        for found, value in parameters.values():
+            every = value(*on_sphere(normals))
+            best = 0.0
+            for start in np.argsort(every)[-4:]:
+
+                def negative(vector: np.ndarray, value: object = value, on_sphere: object = on_sphere) -> float:
+                    return -float(value(*on_sphere(vector[None]))[0])
+
+                options = {"xatol": 1e-8, "fatol": 1e-12, "maxiter": 2000}
+                best = max(best, -minimize(negative, normals[start], method="Nelder-Mead", options=options).fun)
+            assert found.values[place] == pytest.approx(best, rel=1e-5)
 
 
 @pytest.mark.parametrize("shear", [30.0, 60.0, 100.0, 150.0])
@@ -590,17 +755,6 @@ def test_area_in_a_disk_is_in_the_disk() -> None:
     assert covered.y == pytest.approx(127.0, rel=1e-3) and covered.x == pytest.approx(0.0, abs=1e-9)
 
 
-def test_size_effect_needs_a_critical_distance() -> None:
-    """Pads of one material and peak pressure: similar stresses, so the same life at the hot spot; below it a longer one under smaller pads."""
-    script = runpy.run_path(str(EXAMPLES / "fretting_lives.py"))
-    alloy, tests = script["ALLOYS"]["al_4cu"], script["rows"](EXAMPLES / "fatigue_tests/al_4cu.csv")
-    small, large = (script["lives"](alloy, script["solved"](alloy, tests[row], 61), ("hot spot", "point")) for row in (1, 7))
-    assert (tests[1]["pad_radius"], tests[7]["pad_radius"]) == ("25", "150")
-    for parameter in ("SWT", "FS"):
-        assert small[f"{parameter}, hot spot"] == pytest.approx(large[f"{parameter}, hot spot"], rel=1e-3)
-        assert small[f"{parameter}, point"] > 10.0 * large[f"{parameter}, point"] > 50.0 * large[f"{parameter}, hot spot"]
-
-
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_picture_of_a_map(side: float) -> None:
     """The title has the maximum; the line along the critical plane goes into the body, at the angle of the plane."""
@@ -611,4 +765,7 @@ def test_picture_of_a_map(side: float) -> None:
     line = np.diff(ax.lines[0].get_xydata(), axis=0)[0]
     assert line[1] * side > 0.0 and line[0] / line[1] == pytest.approx(-np.tan(np.radians(30.0)))
     assert ax.get_title() == "Findley: 2.5 at (0, 0), 30\N{DEGREE SIGN}"
+    tilted = fatigue.ParameterMap("Findley", x, y, values, angle, np.full(x.shape, np.radians(20.0)))
+    ax = mfv.plot.parameter_contours(tilted, pyplot.figure().subplots())
+    assert ax.get_title().endswith("30\N{DEGREE SIGN}, tilted 20\N{DEGREE SIGN} out of the plane")
     pyplot.close("all")

@@ -40,6 +40,19 @@ def write(folder, study=STUDY, nodes=21, cycles=1):
     return folder / "base.nml"
 
 
+#: A pad whose smallest force has slip zones of less than an interval, and whose others are resolved.
+PAD = """&scene length_unit='mm', force_unit='N' /
+&body shape='half_plane', youngs_modulus=74100, poisson_ratio=0.33 /
+&body shape='disk', radius=127, youngs_modulus=74100, poisson_ratio=0.33 /
+&friction law='coulomb', mu=0.65 /
+&step normal_force=500, friction=.false. /
+&step tangential_force=100 /
+&step tangential_force=-100, cycles=1 /
+"""
+PAD_FORCES = mfv.Axis(Q.keys, [6.5, 50.0, 150.0], [1, -1])
+PAD_STUDY = "&sweep base='pad.nml' /\n&vary key='step(2)%tangential_force', 'step(3)%tangential_force', factor=1, -1, values=6.5, 50, 150, name='Q' /\n"
+
+
 def long_study(folder, count=60, nodes=51):
     """Cases enough to be caught at work."""
     write(

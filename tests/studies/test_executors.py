@@ -10,7 +10,7 @@ import threading
 
 import pytest
 import xarray
-from small import AXES, environment, long_study, run, write
+from small import AXES, PAD, PAD_FORCES, environment, long_study, run, write
 
 import mfv
 from mfv.studies.cases import one_blas_thread, solve
@@ -33,6 +33,18 @@ def test_threads(study, workers):
 def test_processes(study):
     folder, table = study
     assert table.identical(mfv.study(folder / "base.nml", AXES, reference="full", executor="processes", workers=2))
+
+
+def test_warnings_and_bars_are_the_same_everywhere(tmp_path):
+    """In processes, and read from the store: NaN of what is not resolved, nothing of what has no bar."""
+    (tmp_path / "pad.nml").write_text(PAD)
+
+    def solved(**options):
+        return mfv.study(tmp_path / "pad.nml", {"Q": PAD_FORCES}, error_estimate=True, store=tmp_path / "pad.sqlite", **options)
+
+    first = solved()
+    assert first.attrs["cases_flagged"] == 1 and "cycle_dissipation_error" in first and "cycles_error" not in first
+    assert first.identical(solved()) and first.identical(solved(executor="processes", workers=1, again=True))
 
 
 def test_an_executor_of_the_users_own(study):

@@ -7,11 +7,12 @@ import numpy as np
 import pandas
 import pytest
 import xarray
-from small import AXES, BASE, CASES, write
+from small import AXES, BASE, CASES, PAD, PAD_FORCES, write
 
 import mfv
 from mfv.studies import dataset
 from mfv.studies.cases import OF_MESHES, Solved, observables
+from mfv.studies.figure import lines
 
 MOMENTS, TRACTIONS = ("loading", "reversal", "return"), ("pressure", "shear")
 
@@ -67,6 +68,68 @@ def test_early_ends_are_there(study):
     assert all(flat(table, "steps_done")[early] == 1) and all(np.isnan(flat(table, "cycle_dissipation")[early]))
     assert "base.nml: &step 2 tangential_force=4e-4 not reached" in flat(table, "message")[early][0]
     np.testing.assert_allclose(flat(table, "tangential_force")[early], 3e-4, rtol=1e-9)
+
+
+def marked(table, number):
+    """Observables of a case that `unresolved` names, and those whose bar is NaN; both of the ones with bars in any case or named."""
+    named = set(flat(table, "unresolved")[number].split())
+    bars = {name: flat(table, f"{name}_error") for name in observables() if f"{name}_error" in table}
+    with_bars = [name for name, bar in bars.items() if name in named or np.isfinite(bar).any()]
+    there = {name for name in with_bars if np.isfinite(flat(table, name)[number])}
+    return there & named, {name for name in there if np.isnan(bars[name][number])}
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        ("", ""),
+        ("mu=0.65 /", "mu=0.65 /\n&mesh nodes=11, half_width=2.0 /"),
+        ("normal_force=500", "approach=0.04"),
+        ("step tangential_force", "step shift"),
+        (", cycles=1", ""),
+        ("&body shape='disk', radius=127", "&body shape='rounded_punch', edge_radius=2, half_width=2.0"),
+    ],
+)
+def test_what_is_not_resolved_is_what_has_no_bar(change, tmp_path):
+    """The names of the warnings stand for the same observables as in the library, which has no bars of these."""
+    (tmp_path / "pad.nml").write_text(PAD.replace(*change))
+    keys = ["step(2)%shift", "step(3)%shift"] if "shift" in change[1] else PAD_FORCES.keys
+    values = [5e-4, 4e-3] if "shift" in change[1] else [6.5, 50.0]
+    table = mfv.study(tmp_path / "pad.nml", {"Q": mfv.Axis(keys, values, [1, -1])}, error_estimate=True)
+    assert set(flat(table, "error_estimate")) <= {"yes"} or "nodes" in change[1], flat(table, "error_estimate")
+    pairs = [marked(table, number) for number in range(2) if flat(table, "error_estimate")[number] == "yes"]
+    for named, without in pairs:
+        assert named == without
+    assert pairs == [] or pairs[0][0]
+
+
+def test_values_in_doubt(tmp_path):
+    """`flagged` and hollow markers: what is not resolved, and all of a case with another warning."""
+    (tmp_path / "pad.nml").write_text(PAD)
+    table = mfv.study(tmp_path / "pad.nml", {"Q": PAD_FORCES, "friction%mu": [0.5, 0.65]}, error_estimate=True)
+    assert table.attrs["cases_flagged"] == 2
+    assert mfv.studies.flagged(table, "cycle_dissipation").values.tolist() == [[True, True], [False, False], [False, False]]
+    assert not mfv.studies.flagged(table, "approach").any()
+    axes = lines(table)
+    assert axes.get_xlabel() == "Q [N/mm]" and axes.get_ylabel() == "cycle_dissipation [N]"
+    hollow = [line for line in axes.lines if str(line.get_markerfacecolor()) == "white"]
+    assert sum(len(line.get_xdata()) for line in hollow) == 2 and len(axes.collections) == 2
+    words = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert words == ["friction%mu = 0.5", "friction%mu = 0.65", "in doubt: see its warnings"]
+    (tmp_path / "steep.nml").write_text(PAD.replace("radius=127", "radius=0.2"))
+    table = mfv.study(tmp_path / "steep.nml", {"Q": PAD_FORCES}, observables="approach")
+    assert "degrees" in flat(table, "warnings")[2] and mfv.studies.flagged(table, "approach").all()
+    with pytest.raises(ValueError, match="13 lines; at most 12"):
+        many = mfv.study(tmp_path / "pad.nml", {"Q": PAD_FORCES, "friction%mu": list(np.linspace(0.5, 0.8, 13))})
+        lines(many, over="Q")
+
+
+def test_bars_that_cannot_be_are_explained(tmp_path):
+    (tmp_path / "pad.nml").write_text(PAD)
+    table = mfv.study(tmp_path / "pad.nml", {"friction%mu": [0.1, 0.65]}, error_estimate=True)
+    assert flat(table, "outcome").tolist() == ["gross sliding", "complete"]
+    assert flat(table, "error_estimate")[0].startswith("none: ") and flat(table, "error_estimate")[1] == "yes"
+    assert np.isnan(flat(table, "approach_error")[0]) and flat(table, "approach_error")[1] > 0.0
 
 
 def test_reference_is_full_coupling(study):
@@ -447,10 +510,10 @@ def test_files_are_read_back_identical(study, tmp_path):
             xarray.testing.assert_identical(read.load(), table)
     dataset.write(table, tmp_path / "table.csv")
     frame = pandas.read_csv(tmp_path / "table.csv")
-    assert list(frame.columns[:7]) == ["case", "base", "friction%mu", "Q", "scene%coupling", "outcome", "status"]
+    assert list(frame.columns[:7]) == ["case", "base", "friction%mu", "Q [N/mm]", "scene%coupling", "outcome", "status"]
     assert len(frame) == CASES and list(frame["case"]) == list(range(1, CASES + 1))
-    np.testing.assert_array_equal(frame["shift"], flat(table, "shift"))
-    np.testing.assert_array_equal(frame["cycle_dissipation"], flat(table, "cycle_dissipation"))
+    np.testing.assert_array_equal(frame["shift [mm]"], flat(table, "shift"))
+    np.testing.assert_array_equal(frame["cycle_dissipation [N]"], flat(table, "cycle_dissipation"))
 
 
 def test_cases_have_one_datum():

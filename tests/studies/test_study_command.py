@@ -15,7 +15,23 @@ import h5py
 import numpy as np
 import pytest
 import xarray
-from small import BASE, CASES, COMPLETE, INPUT, INTERRUPTED, MFV_RUN, ROOT, STUDY, command, environment, long_study, run, write
+from small import (
+    BASE,
+    CASES,
+    COMPLETE,
+    INPUT,
+    INTERRUPTED,
+    MFV_RUN,
+    PAD,
+    PAD_STUDY,
+    ROOT,
+    STUDY,
+    command,
+    environment,
+    long_study,
+    run,
+    write,
+)
 
 import mfv
 from mfv.commands import main
@@ -66,7 +82,10 @@ def test_the_table_is_that_of_the_library_function(study, tmp_path):
     _folder, table = study
     write(tmp_path)
     done = run("study.nml", "-o", "out.nc", cwd=tmp_path)
-    assert done.returncode == COMPLETE and done.stderr == "" and done.stdout == "out.nc: 18 cases: 15 complete, 3 gross sliding\n"
+    assert done.returncode == COMPLETE and done.stderr == ""
+    counted, warned = done.stdout.splitlines()[:2]
+    assert counted == "out.nc: 18 cases: 15 complete, 3 gross sliding"
+    assert warned.startswith("12 of 18 cases have warnings, 12 of them quantities that are not resolved")
     written = read(tmp_path / "out.nc")
     assert written.attrs["input"] == STUDY and written["base"] == "base.nml"
     for name in table.data_vars:
@@ -81,8 +100,9 @@ def test_comma_separated_values(study, tmp_path):
     assert run("study.nml", "-o", "out.csv", cwd=tmp_path).returncode == COMPLETE
     with open(tmp_path / "out.csv", newline="") as file:
         rows = list(csv.DictReader(file))
-    assert list(rows[0])[:9] == ["case", "base", "friction%mu", "Q", "scene%coupling", "outcome", "status", "message", "steps_done"]
-    assert [float(row["shift"]) for row in rows] == list(table["shift"].values.ravel())
+    names = ["case", "base", "friction%mu", "Q [N/mm]", "scene%coupling", "outcome", "status", "message", "warnings", "unresolved"]
+    assert list(rows[0])[:10] == names and "cycle_dissipation [N]" in rows[0] and "stick_ratio" in rows[0]
+    assert [float(row["shift [mm]"]) for row in rows] == list(table["shift"].values.ravel())
     assert rows[0]["base"] == "base.nml" and {row["outcome"] for row in rows} == {"complete", "gross sliding"}
 
 
@@ -421,6 +441,47 @@ def test_example(tmp_path):
     assert ratio.min() > 1.1 and ratio.max() < 1.5
 
 
+def test_warnings_reach_the_table(tmp_path):
+    """What is not resolved is named at the end, in the table, and after a restart; with --estimate every quantity has its bar or NaN."""
+    (tmp_path / "pad.nml").write_text(PAD)
+    (tmp_path / "study.nml").write_text(PAD_STUDY)
+    told = "1 of 3 cases have warnings, 1 of them quantities that are not resolved: see the columns warnings and unresolved\n"
+    for option in ([], ["--so-far"], ["--again"]):
+        done = run("study.nml", *option, cwd=tmp_path)
+        assert (
+            done.returncode == COMPLETE and told in done.stdout and "case 1 (base='pad.nml', Q=6.5): slip zones have" in done.stdout
+        )
+        table = read(tmp_path / "study.nc")
+        assert table.attrs["cases_flagged"] == 1 and "error_estimate" not in table
+        assert [bool(text) for text in table["warnings"].values] == [True, False, False]
+        assert (
+            "cycle_dissipation" in table["unresolved"].values[0].split() and "approach" not in table["unresolved"].values[0].split()
+        )
+    done = run("study.nml", "--estimate", "-o", "bars.csv", cwd=tmp_path)
+    assert done.returncode == COMPLETE and told in done.stdout
+    with open(tmp_path / "bars.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["error_estimate"] for row in rows] == ["yes"] * 3 and rows[0]["cycle_dissipation_error [N]"] == ""
+    bars = [float(row["cycle_dissipation_error [N]"]) / float(row["cycle_dissipation [N]"]) for row in rows[1:]]
+    assert 0.0 < bars[1] < bars[0] < 0.1 and all(float(row["approach_error [mm]"]) > 0.0 for row in rows)
+
+
+def test_a_table_is_drawn(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "pad.nml").write_text(PAD)
+    (tmp_path / "study.nml").write_text(PAD_STUDY)
+    assert main(["study", "study.nml"]) == COMPLETE and main(["plot", "study.nc"]) == COMPLETE
+    assert (tmp_path / "study.png").stat().st_size > 10_000
+    capsys.readouterr()
+    for options, words in (
+        (["--column", "lower_tensio"], "no column 'lower_tensio' in the table; did you mean lower_tension?"),
+        (["--over", "R"], "no axis of numbers 'R' in the table; did you mean"),
+        (["--stress", "von_mises"], "the table of a study has no --stress"),
+    ):
+        assert main(["plot", "study.nc", *options]) == INPUT
+        assert words.split("; did")[0] in capsys.readouterr().err
+
+
 def test_the_study_in_the_help_is_one(tmp_path):
     told = run("--help", cwd=tmp_path).stdout
     text = re.search(r"^  &sweep.*?\n\n", told, re.MULTILINE | re.DOTALL)
@@ -447,8 +508,8 @@ def test_texts_in_a_csv_are_no_formulas(tmp_path):
     assert run("study.nml", "-o", "out.csv", cwd=tmp_path).returncode == COMPLETE
     with open(tmp_path / "out.csv", newline="") as file:
         header, *rows = csv.reader(file)
-    assert "'=Q" in header and len(rows) == 10
-    forces = {float(row[header.index("'=Q")]) for row in rows}
+    assert "'=Q [N/mm]" in header and len(rows) == 10
+    forces = {float(row[header.index("'=Q [N/mm]")]) for row in rows}
     assert forces == {-2.8e-4, -1.5e-4}
     for cell in (*header, *(cell for row in rows for cell in row)):
         if cell.startswith(("=", "+", "-", "@")):

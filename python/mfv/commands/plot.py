@@ -7,6 +7,7 @@ import argparse
 from .._files import PICTURES, target, written
 from ..result import read
 from ..stress import NAMES
+from ..studies.plan import is_table
 from .completion import complete_words
 from .shared import add_output, add_result
 
@@ -16,6 +17,7 @@ DESCRIPTION = """\
 Draw a result in up to three panels: pressure over x; shear traction over x with stick and slip zones and the friction
 limits (without friction: the deformed surfaces of both bodies); tangential force over shift with numbered step ends
 (if the load history has a tangential force). Points are computed values, lines are closed forms if the file has any.
+Of the table of a study (study.nc) draw a column over an axis; hollow markers are in doubt, see the column warnings.
 """
 
 EXAMPLES = """\
@@ -29,6 +31,8 @@ examples:
                                             draw the state after step 2 as a PDF
   python -m mfv plot shear_cycles.h5 --cycles
                                             draw the hysteresis loop and the dissipation over x
+  python -m mfv plot study.nc --column lower_tension --over friction%mu
+                                            draw a column of a study over one of its axes
 """
 
 
@@ -47,11 +51,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="draw contours of a stress inside a body: von_mises, tresca, principal_1, sigma_xx, ...",
     )
     complete_words(stress, lambda: NAMES)
+    kind.add_argument("--column", metavar="NAME", help="of a study: the column (the dissipation of the cycle by default)")
     kind.add_argument(
         "--cycles",
         action="store_true",
         help="draw the cycles: hysteresis loop, its non-linear part, dissipation of the last cycle over x",
     )
+    parser.add_argument("--over", metavar="AXIS", help="of a study: the axis (the one with most values by default)")
     parser.add_argument("--body", choices=("lower", "upper"), help="with --stress: inside which body (lower by default)")
     parser.add_argument(
         "--axes",
@@ -70,8 +76,13 @@ def run(options: argparse.Namespace) -> None:
         raise ValueError("--axes has no effect without --stress; add --stress NAME or remove --axes")
     if options.step is not None and options.cycles:
         raise ValueError("--step has no effect with --cycles; remove one of them")
+    if is_table(options.file):
+        _draw_study(options)
+        return
     body = options.body or "lower"
     result = read(options.file)
+    if options.column is not None or options.over is not None:
+        raise ValueError(f"{options.file}: not the table of a study; remove --column and --over")
     name = f"{options.file.stem}_{options.stress}_{body}" if options.stress else options.file.stem
     if options.cycles:
         name += "_cycles"
@@ -82,6 +93,23 @@ def run(options: argparse.Namespace) -> None:
         picture = plot.cycles_figure(result)
     else:
         picture = plot.figure(result, options.step)
+    with written(output) as part:
+        picture.savefig(part, dpi=200)
+    print(output)
+
+
+def _draw_study(options: argparse.Namespace) -> None:
+    """Draw a column of a study's table. Raises OSError, ValueError."""
+    import xarray  # here, since results are drawn without it
+
+    from ..studies.figure import figure
+
+    if options.stress or options.cycles or options.step is not None:
+        raise ValueError(f"{options.file}: the table of a study has no --stress, --cycles or --step; use --column and --over")
+    with xarray.open_dataset(options.file, engine="h5netcdf") as table:
+        picture = figure(table, options.column, options.over)
+    name = f"{options.file.stem}_{options.column}.png" if options.column else f"{options.file.stem}.png"
+    output = target(options.output, options.file.with_name(name.replace("/", "_")), PICTURES, [options.file])
     with written(output) as part:
         picture.savefig(part, dpi=200)
     print(output)

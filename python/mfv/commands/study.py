@@ -64,6 +64,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     either = parser.add_mutually_exclusive_group()
     either.add_argument("--again", action="store_true", help="solve all cases again")
     either.add_argument("--so-far", action="store_true", help="solve nothing; write the table of the cases solved so far")
+    parser.add_argument(
+        "--estimate", action="store_true", help="also solve every case on coarser meshes, for error bars (twice the time)"
+    )
     parser.add_argument("--list", action="store_true", help="check the study and list its cases; nothing is solved or written")
     parser.add_argument("--case", type=at_least(1), metavar="N", help="print case N, from 1, as a case for mfv_run")
     parser.add_argument("--keys", action="store_true", help="print every group and key of a study, as tables in Markdown")
@@ -77,6 +80,7 @@ def run(options: argparse.Namespace) -> int | None:
     if options.file is None:
         raise ValueError("no study given; write 'python -m mfv study STUDY.nml'")
     study = read_study(options.file)
+    study.error_estimate = options.estimate
     if options.case is not None:
         print(study.text(options.case), end="")
         return None
@@ -110,6 +114,7 @@ def _solve(study: Study, output: Path, options: argparse.Namespace) -> int | Non
             raise
     write(table, output)
     print(f"{output}: {_counted(table)}")
+    _print_warned(study, table)
     _print_refused(study, table)
     return None
 
@@ -138,10 +143,23 @@ def _counted(table: xarray.Dataset) -> str:
     outcomes = [
         f"{count} {name.removeprefix('cases_').replace('_', ' ')}"
         for name, count in table.attrs.items()
-        if name.startswith("cases_") and name != "cases_done"
+        if name.startswith("cases_") and name not in ("cases_done", "cases_flagged")
     ]
     missing = table.attrs["cases"] - table.attrs["cases_done"]
     return f"{table.attrs['cases']} cases: {', '.join([*outcomes, *([f'{missing} not solved'] if missing else [])])}"
+
+
+def _print_warned(study: Study, table: xarray.Dataset) -> None:
+    """Print how many cases have warnings, and the first with its warnings."""
+    warned = [place for place, text in enumerate(table["warnings"].values.flat) if text]
+    if not warned:
+        return
+    unresolved = sum(map(bool, table["unresolved"].values.flat))
+    print(
+        f"{len(warned)} of {table.attrs['cases']} cases have warnings, {unresolved} of them quantities that are not resolved: see the "
+        "columns warnings and unresolved"
+    )
+    print(f"case {warned[0] + 1} ({study.describe(warned[0] + 1)}): {table['warnings'].values.flat[warned[0]]}")
 
 
 def _print_refused(study: Study, table: xarray.Dataset) -> None:

@@ -7,7 +7,16 @@ parameter with its maximum; `averaged_cycle` its average over a critical distanc
 
 from .cracks import EdgeCrack, edge_crack, short_crack_threshold, stress_intensity
 from .critical_distance import averaged_cycle, critical_length
-from .lives import Counted, Damage, StrainLife, count_cycles, life, smith_watson_topper_damage
+from .lives import (
+    Counted,
+    Damage,
+    StrainLife,
+    count_cycles,
+    fatemi_socie_damage,
+    findley_damage,
+    life,
+    smith_watson_topper_damage,
+)
 from .parameters import (
     ParameterMap,
     Peak,
@@ -42,8 +51,10 @@ __all__ = [
     "dang_van_constant",
     "edge_crack",
     "fatemi_socie",
+    "fatemi_socie_damage",
     "findley",
     "findley_constant",
+    "findley_damage",
     "graded_points",
     "last_cycle",
     "life",

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Callable, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._packages import needed
+from .parameters import MARGIN, in_range, normal_strain, on_planes
 from .stress_cycle import StressCycle
 
 Array = NDArray[np.float64]
@@ -19,9 +20,17 @@ Curve = Callable[[Any], Any]
 #: Longest life that is computed; beyond it a life is infinite.
 LONGEST_LIFE = 1.0e12
 
-#: Planes of the first search are refined if they have more than this fraction of its largest damage; angles are found to the second
-#: number, in radians.
-PROMISING, PLANE_TOLERANCE = 0.5, 1.0e-3
+#: Planes of the first search: angles over half a turn, and tilts over a quarter.
+ANGLES, TILTS = 36, 7
+
+#: The number of planes that are refined, with more than this fraction of the largest damage, at this distance from each other [radians].
+REFINED, PROMISING, APART = 3, 0.5, 0.2
+
+#: Angles are found to this [radians].
+PLANE_TOLERANCE = 1.0e-4
+
+#: Points of a curve, in place of its inverse, in the search for the plane.
+TABULATED = 241
 
 #: Plastic strains do not change the volume.
 PLASTIC_POISSON_RATIO = 0.5
@@ -60,12 +69,18 @@ class StrainLife:
         return np.asarray(self.stress_amplitude(cycles) * self.strain_amplitude(cycles))
 
     def fatemi_socie(self, cycles: ArrayLike, *, yield_strength: float, k: float = 1.0) -> Array:
-        """Fatemi and Socie's parameter on the plane of the largest shear strain, at 45 degrees (Socie and Marquis 2000, Multiaxial Fatigue,
-        section 5.5.2)."""
+        """Fatemi and Socie's parameter on the plane where it is largest, as `mfv.fatigue.fatemi_socie` has it.
+
+        On a plane whose normal is at the angle a to the load, the shear strain amplitude is sin(2a) of that at 45 degrees and the largest
+        normal stress s cos(a)^2: gamma sin(2a) (1 + c + c cos(2a)) with c = k s/(2 yield_strength) is largest at cos(2a) = 2 c/(1 + c +
+        sqrt((1 + c)^2 + 8 c^2)). Curves in books (Socie and Marquis 2000, section 5.5.2) are those of the plane at 45 degrees, cos(2a) = 0.
+        """
         stress = self.stress_amplitude(cycles)
         elastic = (1.0 + self.poisson_ratio) * stress / self.youngs_modulus
         shear_strain = elastic + (1.0 + PLASTIC_POISSON_RATIO) * self.plastic_strain(cycles)
-        return np.asarray(shear_strain * (1.0 + 0.5 * k * stress / yield_strength))
+        c = 0.5 * k * stress / yield_strength
+        cosine = 2.0 * c / (1.0 + c + np.sqrt((1.0 + c) ** 2 + 8.0 * c**2))
+        return np.asarray(shear_strain * np.sqrt(1.0 - cosine**2) * (1.0 + c + c * cosine))
 
     def findley(self, cycles: ArrayLike, *, k: float) -> Array:
         """Findley's parameter of Basquin's stress amplitude [force/length^2]."""
@@ -137,41 +152,157 @@ def count_cycles(history: ArrayLike) -> Counted:
 
 
 class Damage(NamedTuple):
-    """Miner's damage of one repetition of a history, whose inverse is the life in repetitions, and the plane with the most of it."""
+    """Miner's damage of one repetition of a history, whose inverse is the life in repetitions, and angle and tilt (as of ParameterMap) of the
+    plane with the most of it; NaN without damage."""
 
     value: float
     angle: float
+    tilt: float
 
 
-def smith_watson_topper_damage(history: StressCycle, curve: Curve, *, planes: int = 36) -> Damage:
+def smith_watson_topper_damage(history: StressCycle, curve: Curve) -> Damage:
     """Miner's damage of a history that is not a simple cycle, at one point, on the plane where it is largest.
 
-    On a plane the normal strain is counted by `count_cycles`; each cycle has its own Smith-Watson-Topper value, with the larger of
-    the normal stresses at its ends. `history`: of one point, such as of `averaged_cycle`. `curve`: as of `life`. `planes`: of the first
-    search, over half a turn; scipy's `minimize_scalar` then finds the largest damage about each that has more than its neighbours.
+    On a plane the normal strain is counted by `count_cycles`; each cycle has its own parameter, with the largest normal stress from its
+    beginning until it is closed. `history`: of one point, such as of `averaged_cycle`. `curve`: as of `life`. Planes in all directions are
+    searched, first 5 degrees apart; scipy refines the best. Raises ValueError for several points.
+    """
+
+    def counted(normal: Array, _shear: Array) -> Array:
+        return np.asarray(normal_strain(history, normal)[None])
+
+    return _largest_damage(history, counted, lambda amplitude, tension: np.maximum(tension, 0.0) * amplitude, curve)
+
+
+def fatemi_socie_damage(history: StressCycle, curve: Curve, *, yield_strength: float, k: float = 1.0) -> Damage:
+    """Miner's damage by Fatemi and Socie's parameter, as `smith_watson_topper_damage`: on a plane the shear strain along a direction is
+    counted, and planes and directions are searched (Bannantine and Socie 1991, ASTM STP 1122, 249)."""
+
+    def value(amplitude: Array, tension: Array) -> Array:
+        return np.asarray(amplitude / history.shear_modulus * (1.0 + k * np.maximum(tension, 0.0) / yield_strength))
+
+    return _largest_damage(history, lambda _normal, shear: shear, value, curve)
+
+
+def findley_damage(history: StressCycle, curve: Curve, *, k: float) -> Damage:
+    """Miner's damage by Findley's parameter, as `fatemi_socie_damage`: the shear stress along a direction is counted."""
+    return _largest_damage(history, lambda _normal, shear: shear, lambda amplitude, tension: amplitude + k * tension, curve)
+
+
+def _largest_damage(
+    history: StressCycle,
+    counted: Callable[[Array, Array], Array],
+    value: Callable[[Array, Array], Array],
+    curve: Curve,
+) -> Damage:
+    """Damage on the plane, and along the direction on it, where it is largest.
+
+    `counted`: the counted quantity, shape (1 or 2 components, states), of normal and shear stress on a plane. `value`: the parameter of
+    cycles with this amplitude of it and this largest normal stress.
     """
     if history.x.size != 1:
         raise ValueError(f"the damage is that of one point, not {history.x.size}")
-    xx, yy, xy, zz = history.stress.reshape(-1, 4).T
+    single = replace(history, x=np.zeros(()), y=np.zeros(()), stress=history.stress.reshape(-1, 4))
+    is_vector = len(counted(*on_planes(single, np.zeros(()), np.zeros(())))) > 1
+    rate = _tabulated(curve)
 
-    def damage(angle: float) -> float:
-        c, s = np.cos(angle), np.sin(angle)
-        normal = xx * c**2 + yy * s**2 + 2.0 * xy * s * c
-        strain = (normal - history.poisson_ratio * (xx + yy + zz - normal)) / history.youngs_modulus
-        counted = count_cycles(strain)
-        largest = np.maximum(np.maximum(normal[counted.first], normal[counted.second]), 0.0)
-        value = largest * 0.5 * np.abs(strain[counted.first] - strain[counted.second])
-        return float(np.sum(1.0 / np.atleast_1d(life(value, curve)))) if value.size else 0.0
+    def cycles(plane: Array) -> Array:
+        """The parameter of every cycle on a plane: angle, tilt, and direction on it."""
+        normal, shear = on_planes(single, plane[0], plane[1])
+        along = counted(normal, shear)
+        loads = along[0] * np.cos(plane[2]) + along[1] * np.sin(plane[2]) if is_vector else along[0]
+        found = count_cycles(loads)
+        amplitude = 0.5 * np.abs(loads[found.first] - loads[found.second])
+        return np.asarray(value(amplitude, _largest_during(found, loads, normal)))
 
-    angles = np.pi * (0.5 - np.arange(planes) / planes)
-    values = np.array([damage(angle) for angle in angles])
-    best = int(np.argmax(values))
-    worst = Damage(float(values[best]), float(angles[best]) if values[best] > 0.0 else np.nan)
-    minimize_scalar = needed("scipy.optimize").minimize_scalar
-    is_peak = (values >= np.roll(values, 1)) & (values >= np.roll(values, -1)) & (values > PROMISING * worst.value)
-    for angle in angles[is_peak]:
-        ends = angle - np.pi / planes, angle + np.pi / planes
-        found = minimize_scalar(lambda turn: -damage(turn), bounds=ends, method="bounded", options={"xatol": PLANE_TOLERANCE})
-        if -found.fun > worst.value:
-            worst = Damage(float(-found.fun), float(np.pi / 2.0 - np.mod(np.pi / 2.0 - found.x, np.pi)))
-    return worst
+    def negative(plane: Array) -> float:
+        return -float(np.sum(rate(cycles(plane))))
+
+    planes = []
+    for angle in np.pi * (0.5 - np.arange(ANGLES) / ANGLES):
+        for tilt in 0.5 * np.pi * np.arange(TILTS) / (TILTS - 1):
+            along = counted(*on_planes(single, np.asarray(angle), np.asarray(tilt)))
+            planes.append(np.array([angle, tilt, _longest(along)]))
+    damages = np.array([-negative(plane) for plane in planes])
+    minimize = needed("scipy.optimize").minimize
+    best, most = planes[0], 0.0
+    for start in _apart(planes, damages):
+        # Perpendicular planes are refined among themselves first, since a tilt of 0 is an end of its range.
+        for free in ([0], [0, 1, 2] if is_vector else [0, 1]):
+            plane = start.copy()
+
+            def part(values: Array, plane: Array = plane, free: list[int] = free) -> float:
+                plane[free] = values
+                return negative(plane)
+
+            simplex = np.vstack([start[free], start[free] + 0.05 * np.eye(len(free))])
+            options = {"xatol": PLANE_TOLERANCE, "fatol": 0.0, "initial_simplex": simplex}
+            found = minimize(part, start[free], method="Nelder-Mead", options=options)
+            if -found.fun > most * (1.0 + MARGIN):
+                plane[free] = found.x
+                best, most = plane.copy(), float(-found.fun)
+    if most == 0.0:
+        return Damage(0.0, np.nan, np.nan)
+    values = cycles(best)
+    angle, tilt = in_range(best[0], best[1])
+    return Damage(float(np.sum(1.0 / np.atleast_1d(life(values, curve)))), float(angle), float(tilt))
+
+
+def _apart(planes: list[Array], damages: Array) -> list[Array]:
+    """The planes with the largest damage, at some distance from each other."""
+    chosen: list[Array] = []
+    normals: list[Array] = []
+    for place in np.argsort(-damages, kind="stable"):
+        if len(chosen) == REFINED or damages[place] <= PROMISING * damages.max():
+            break
+        angle, tilt, _ = planes[place]
+        normal = np.array([np.cos(tilt) * np.cos(angle), np.cos(tilt) * np.sin(angle), np.sin(tilt)])
+        if all(abs(float(normal @ other)) < np.cos(APART) for other in normals):
+            chosen.append(planes[place])
+            normals.append(normal)
+    return chosen
+
+
+def _longest(path: Array) -> float:
+    """The direction of the longest chord of a path, shape (1 or 2, states)."""
+    if len(path) == 1:
+        return 0.0
+    chords = path[:, :, None] - path[:, None, :]
+    first, second = np.unravel_index(np.argmax(np.sum(chords**2, axis=0)), chords.shape[1:])
+    return float(np.arctan2(chords[1, first, second], chords[0, first, second]))
+
+
+def _largest_during(cycles: Counted, loads: Array, normal: Array) -> Array:
+    """The largest normal stress during every cycle of a repeated history: from its beginning, at `first`, until `loads` return there,
+    linear between states."""
+    start, states = int(np.argmax(loads)), loads.size
+    order = np.append(np.roll(np.arange(states), -start), start)
+    place = np.empty(states, dtype=int)
+    place[order[:-1]] = np.arange(states)
+    along, stress = loads[order], normal[order]
+    largest = np.empty(cycles.first.size)
+    for number, (first, second) in enumerate(zip(cycles.first, cycles.second)):
+        begin, turn = place[first], place[second]
+        side = np.sign(along[turn] - along[begin])
+        # The history ends where it begins, at its largest value, so every cycle is closed.
+        end = turn + 1 + int(np.argmax(side * (along[turn + 1 :] - along[begin]) <= 0.0))
+        share = (along[begin] - along[end - 1]) / (along[end] - along[end - 1])
+        closed = stress[end - 1] + share * (stress[end] - stress[end - 1])
+        largest[number] = max(float(np.max(stress[begin:end])), float(closed))
+    return largest
+
+
+def _tabulated(curve: Curve) -> Callable[[Array], Array]:
+    """Damage of cycles with some values of a parameter, from a table of the curve: fast enough for a search."""
+    cycles = np.geomspace(0.5, LONGEST_LIFE, TABULATED)
+    values = np.array([float(curve(one)) for one in cycles])
+    if not (values > 0.0).all() or not (np.diff(values) < 0.0).all():
+        life(1.0, curve)  # raises ValueError with its reason
+        raise ValueError("the curve must decrease with the number of cycles everywhere")
+
+    def rate(wanted: Array) -> Array:
+        is_counted = wanted > values[-1]
+        logs = np.interp(np.log(np.where(is_counted, wanted, values[-1])), np.log(values[::-1]), np.log(cycles[::-1]))
+        return np.where(is_counted, np.exp(-logs), 0.0)
+
+    return rate

@@ -1,6 +1,7 @@
 """Multiaxial fatigue parameters of a stress cycle: Smith-Watson-Topper, Fatemi-Socie, Findley, Crossland, Dang Van; Ruiz's of a result.
 
-Critical planes are searched among those perpendicular to the plane of the model, on which shear acts in one direction.
+Critical planes are searched in all directions: perpendicular to the plane of the model and tilted out of it. Shear on a tilted plane has two
+components; its amplitude is half the longest chord of its path, the largest amplitude along any direction on the plane.
 """
 
 from __future__ import annotations
@@ -20,11 +21,14 @@ from .stress_cycle import StressCycle, last_cycle, stress_cycle
 
 Array = NDArray[np.float64]
 
-#: Planes of the first search, over half a turn.
-PLANES = 60
+#: Planes of the first searches: perpendicular ones over half a turn, and angles and tilts of others.
+PLANES, ANGLES, TILTS = 60, 36, 10
 
-#: Searches that follow, each in one fifth of the interval of the search before: the angle is found to 2e-5 radians.
-REFINEMENTS = 5
+#: Searches that follow, within one interval of the search before, with half of it: angles are found to 2e-5 radians.
+REFINEMENTS = 12
+
+#: A tilted plane is critical if its value is larger than that of any perpendicular plane by this fraction, not by round-off.
+MARGIN = 1.0e-6
 
 #: Points may be outside the smallest sphere by this fraction of its radius, and those that determine it farther from its surface by no
 #: more than the second: round-off must not exchange them for ever.
@@ -32,20 +36,22 @@ SPHERE_TOLERANCE, ON_SPHERE = 1.0e-9, 1.0e-11
 
 
 class Peak(NamedTuple):
-    """The largest value of a parameter, where it is, and the angle of its plane (NaN for a parameter without)."""
+    """The largest value of a parameter, where it is, and angle and tilt of its plane (NaN for a parameter without)."""
 
     value: float
     x: float
     y: float
     angle: float
+    tilt: float
 
 
 @dataclass(frozen=True)
 class ParameterMap:
-    """A fatigue parameter at points: `values` and `angle` have the shape of `x` and `y`.
+    """A fatigue parameter at points: `values`, `angle` and `tilt` have the shape of `x` and `y`.
 
-    `angle`: of the normal of the critical plane from the x axis, in radians, above -pi/2 and at most pi/2; the angle of a crack on
-    this plane from the normal of a flat surface, counterclockwise. NaN for parameters that are invariants.
+    `angle`: of the normal of the critical plane, projected into the plane of the model, from the x axis, in radians, above -pi/2 and at most
+    pi/2; the angle of a crack on this plane from the normal of a flat surface, counterclockwise. `tilt`: of the normal out of the plane of
+    the model, from 0 to pi/2; of two mirror images either. NaN for parameters that are invariants.
     """
 
     name: str
@@ -53,6 +59,7 @@ class ParameterMap:
     y: Array
     values: Array
     angle: Array
+    tilt: Array | float = 0.0
 
     @property
     def maximum(self) -> Peak:
@@ -60,7 +67,8 @@ class ParameterMap:
         if not np.isfinite(self.values).any():
             raise ValueError(f"{self.name} has no value at any point: are the points inside the body?")
         place = np.unravel_index(np.nanargmax(self.values), self.values.shape)
-        return Peak(float(self.values[place]), float(self.x[place]), float(self.y[place]), float(self.angle[place]))
+        tilt = np.broadcast_to(self.tilt, self.values.shape)[place]
+        return Peak(float(self.values[place]), float(self.x[place]), float(self.y[place]), float(self.angle[place]), float(tilt))
 
 
 def smith_watson_topper(cycle: StressCycle) -> ParameterMap:
@@ -68,13 +76,9 @@ def smith_watson_topper(cycle: StressCycle) -> ParameterMap:
 
     Smith, Watson, Topper (1970), J. Materials 5, 767; on planes: Socie (1987), ASME J. Engineering Materials 109, 293. Elastic strains.
     """
-    poisson = cycle.poisson_ratio
 
-    def value(angle: Array) -> Array:
-        normal = normal_stress(cycle, angle)
-        lateral = 3.0 * cycle.hydrostatic - normal
-        strain = (normal - poisson * lateral) / cycle.youngs_modulus
-        return np.asarray(np.maximum(np.max(normal, axis=0), 0.0) * _amplitude(strain))
+    def value(normal: Array, _shear: Array) -> Array:
+        return np.asarray(np.maximum(np.max(normal, axis=0), 0.0) * 0.5 * np.ptp(normal_strain(cycle, normal), axis=0))
 
     return _critical_plane("Smith-Watson-Topper", cycle, value)
 
@@ -85,9 +89,9 @@ def fatemi_socie(cycle: StressCycle, *, yield_strength: float, k: float = 1.0) -
     The amplitude is half the range of the engineering shear strain. Fatemi and Socie (1988), Fatigue Fract. Engng Materials Struct. 11, 149.
     """
 
-    def value(angle: Array) -> Array:
-        tension = np.maximum(np.max(normal_stress(cycle, angle), axis=0), 0.0)
-        return np.asarray(_amplitude(_shear_stress(cycle, angle)) / cycle.shear_modulus * (1.0 + k * tension / yield_strength))
+    def value(normal: Array, shear: Array) -> Array:
+        tension = np.maximum(np.max(normal, axis=0), 0.0)
+        return np.asarray(_shear_amplitude(shear) / cycle.shear_modulus * (1.0 + k * tension / yield_strength))
 
     return _critical_plane("Fatemi-Socie", cycle, value)
 
@@ -95,8 +99,8 @@ def fatemi_socie(cycle: StressCycle, *, yield_strength: float, k: float = 1.0) -
 def findley(cycle: StressCycle, *, k: float) -> ParameterMap:
     """(Shear stress amplitude) + k sigma_n,max on the plane where the sum is largest [force/length^2]. Findley (1959), J. Eng. Ind. 81, 301."""
 
-    def value(angle: Array) -> Array:
-        return np.asarray(_amplitude(_shear_stress(cycle, angle)) + k * np.max(normal_stress(cycle, angle), axis=0))
+    def value(normal: Array, shear: Array) -> Array:
+        return np.asarray(_shear_amplitude(shear) + k * np.max(normal, axis=0))
 
     return _critical_plane("Findley", cycle, value)
 
@@ -187,44 +191,78 @@ def findley_constant(bending_limit: float, torsion_limit: float) -> float:
     return float(ratio / np.sqrt(1.0 - ratio**2))
 
 
-def _critical_plane(name: str, cycle: StressCycle, value: Callable[[Array], Array]) -> ParameterMap:
-    """The largest value over all planes; `value` has it for angles of the normal, one per point."""
-    best = np.full(cycle.x.shape, -np.inf)
-    angle = np.zeros(cycle.x.shape)
-    interval = np.pi / PLANES
-    offsets = interval * np.arange(PLANES)
-    for _ in range(REFINEMENTS + 1):
-        middle = angle.copy()
-        for offset in offsets:
-            here = value(middle + offset)
-            is_better = here > best
-            best, angle = np.where(is_better, here, best), np.where(is_better, middle + offset, angle)
-        interval = interval / 5.0
-        offsets = interval * np.arange(-5, 6)
+def _critical_plane(name: str, cycle: StressCycle, value: Callable[[Array, Array], Array]) -> ParameterMap:
+    """The largest value over all planes; `value` has it for the histories of `on_planes`, one plane per point."""
+
+    def at(angle: Array, tilt: Array) -> Array:
+        return value(*on_planes(cycle, angle, tilt))
+
+    best, angle, tilt = _largest(at, cycle.x.shape, PLANES, 1)
+    tilted = _largest(at, cycle.x.shape, ANGLES, TILTS)
     is_outside = np.isnan(cycle.stress).any(axis=(0, -1))
-    angle = np.pi / 2.0 - np.mod(np.pi / 2.0 - angle, np.pi)
-    return ParameterMap(name, cycle.x, cycle.y, np.where(is_outside, np.nan, best), np.where(is_outside, np.nan, angle))
+    is_tilted = tilted[0] * (1.0 - MARGIN * np.sign(tilted[0])) > best  # also where both are -inf outside
+    best, angle, tilt = (np.where(is_tilted, *both) for both in zip(tilted, (best, angle, tilt)))
+    return ParameterMap(name, cycle.x, cycle.y, *(np.where(is_outside, np.nan, one) for one in (best, *in_range(angle, tilt))))
+
+
+def _largest(at: Callable[[Array, Array], Array], shape: tuple[int, ...], angles: int, tilts: int) -> tuple[Array, Array, Array]:
+    """The largest values of a function of angle and tilt at points, and both. `angles`, `tilts`: of the first search, over half and a
+    quarter of a turn; one tilt is 0."""
+    best, angle, tilt = np.full(shape, -np.inf), np.zeros(shape), np.zeros(shape)
+    step, step_up = np.pi / angles, 0.5 * np.pi / max(tilts - 1, 1)
+    turns, rises = step * np.arange(angles), step_up * np.arange(tilts)
+    for _ in range(REFINEMENTS + 1):
+        middle, height = angle.copy(), tilt.copy()
+        for turn in turns:
+            for rise in rises:
+                here = at(middle + turn, height + rise)
+                is_better = here > best
+                best = np.where(is_better, here, best)
+                angle, tilt = np.where(is_better, middle + turn, angle), np.where(is_better, height + rise, tilt)
+        step, step_up = 0.5 * step, 0.5 * step_up
+        turns = step * np.arange(-2, 3)
+        rises = step_up * np.arange(-2, 3) if tilts > 1 else rises
+    return best, angle, tilt
+
+
+def in_range(angle: Array, tilt: Array) -> tuple[Array, Array]:
+    """The same planes, or their mirror images, with angles above -pi/2 and at most pi/2 and tilts from 0 to pi/2."""
+    tilt = np.mod(tilt, np.pi)
+    return np.pi / 2.0 - np.mod(np.pi / 2.0 - angle, np.pi), np.minimum(tilt, np.pi - tilt)
+
+
+def on_planes(cycle: StressCycle, angle: Array, tilt: Array) -> tuple[Array, Array]:
+    """Normal stress, shape (states, *shape), and shear stress, (2, states, *shape), in the plane of the model and across, on planes whose
+    normals have this angle and tilt (see ParameterMap)."""
+    xx, yy, xy, zz = np.moveaxis(cycle.stress, -1, 0)
+    c, s, up, out = np.cos(angle), np.sin(angle), np.cos(tilt), np.sin(tilt)
+    across = xx * c**2 + yy * s**2 + 2.0 * xy * s * c
+    along = (yy - xx) * s * c + xy * (c**2 - s**2)
+    return across * up**2 + zz * out**2, np.stack([along * up, (across - zz) * up * out])
+
+
+def normal_strain(cycle: StressCycle, normal: Array) -> Array:
+    """Elastic strain along the normals of planes with this normal stress, shape (states, *shape)."""
+    return np.asarray((normal - cycle.poisson_ratio * (3.0 * cycle.hydrostatic - normal)) / cycle.youngs_modulus)
+
+
+def _shear_amplitude(shear: Array) -> Array:
+    """Half the longest chord of the paths of shear stresses, shape (2, states, *shape)."""
+    longest = np.zeros(shear.shape[2:])
+    for apart in range(1, shear.shape[1]):
+        along, across = shear[:, apart:] - shear[:, :-apart]
+        longest = np.maximum(longest, np.max(along * along + across * across, axis=0))
+    return np.asarray(0.5 * np.sqrt(longest))
 
 
 def _invariant(name: str, cycle: StressCycle, values: Array) -> ParameterMap:
-    return ParameterMap(name, cycle.x, cycle.y, values, np.full(cycle.x.shape, np.nan))
+    return ParameterMap(name, cycle.x, cycle.y, values, np.full(cycle.x.shape, np.nan), np.nan)
 
 
 def normal_stress(cycle: StressCycle, angle: Array) -> Array:
     """Normal stress on planes with normals at these angles, shape (states, *shape)."""
     c, s = np.cos(angle), np.sin(angle)
     return np.asarray(cycle.stress[..., 0] * c**2 + cycle.stress[..., 1] * s**2 + 2.0 * cycle.stress[..., 2] * s * c)
-
-
-def _shear_stress(cycle: StressCycle, angle: Array) -> Array:
-    """Shear stress on these planes."""
-    c, s = np.cos(angle), np.sin(angle)
-    return np.asarray((cycle.stress[..., 1] - cycle.stress[..., 0]) * s * c + cycle.stress[..., 2] * (c**2 - s**2))
-
-
-def _amplitude(history: Array) -> Array:
-    """Half the range over the states."""
-    return np.asarray(0.5 * np.ptp(history, axis=0))
 
 
 def _deviator(cycle: StressCycle) -> Array:

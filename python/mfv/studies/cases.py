@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import dataclasses
 import functools
 import hashlib
+import math
 import os
+import re
 import time
 from collections.abc import Iterator, Sequence
 from ctypes import byref, c_double, c_int, c_void_p
@@ -42,6 +45,27 @@ COMPARED = (*OF_MESHES, *(f"moments/{moment}/{traction}" for moment in MOMENTS f
 
 #: Keys that name files, with their groups.
 FILE_KEYS = ("body(1)%file", "body(2)%file", "friction%mu_file")
+
+#: What precedes the names of quantities in a warning about the mesh.
+NOT_RESOLVED = "not resolved:"
+
+#: Observables that are resolved if another quantity is, and dimensionless ones with their uncertain factor.
+NAMED_AS = {
+    "contact_centre": "contact_length",
+    "normal_force": "approach",
+    **dict.fromkeys(("tangential_force", "shift_drift", "creepage"), "shift"),
+    **dict.fromkeys(("worn_area", "wear_depth"), "dissipation"),
+}
+FACTORS = {
+    "half_width_number": "contact_half_width",
+    "pressure_number": "peak_pressure",
+    "shear_number": "peak_shear",
+    "force_number": "force_amplitude",
+    "shift_number": "shift_amplitude",
+    "dissipation_number": "cycle_dissipation",
+    "stiffness_number": "tangential_stiffness",
+    "creepage_number": "creepage",
+}
 
 _NAN = float("nan")
 
@@ -81,6 +105,13 @@ class Solved:
     observables: list[float] = field(default_factory=list)
     arrays: dict[str, NDArray[Any]] = field(default_factory=dict)
     about: dict[str, tuple[str, str, str]] = field(default_factory=dict)
+    #: Warnings, one per line; names of the observables that they call not resolved, separated by blanks.
+    warnings: str = ""
+    unresolved: str = ""
+    #: 'yes' with error bars, 'none: ' and the reason without, empty if not requested; bars of the observables, NaN if
+    #: not resolved, None for an observable without.
+    error_estimate: str = ""
+    bars: list[float | None] = field(default_factory=list)
 
 
 @functools.cache
@@ -149,7 +180,8 @@ def datums_of_case(base: Base, settings: Sequence[tuple[str, Any]]) -> dict[str,
 
 def digest(job: Job, base_digest: str) -> str:
     """A hash of everything that determines the results of a case: the base, the values, the contents of files, the version."""
-    kept = (library_version(), tuple(observables()), base_digest, _contents(job.settings), job.fields, job.compared)
+    columns = tuple(one.name for one in dataclasses.fields(Solved))
+    kept = (library_version(), columns, tuple(observables()), base_digest, _contents(job.settings), job.fields, job.compared)
     return hashlib.sha256(repr(kept).encode()).hexdigest()
 
 
@@ -230,6 +262,13 @@ def _kept(case: Case, status: int, job: Job) -> Solved:
     solved = Solved(status, case._library_message(), counts, _real(case, b"summary/largest_residual"))
     solved.observables = [_real(case, path) for path in _observable_paths()]
     counts["nodes"] = case._count("mesh/x")
+    solved.warnings = case._attribute("warnings")
+    names = not_resolved(solved.warnings)
+    there = [name for name, value in zip(observables(), solved.observables) if not math.isnan(value)]
+    solved.unresolved = " ".join(name for name in there if name in names)
+    solved.error_estimate = _attribute(case, "error_estimate")
+    if solved.error_estimate:
+        solved.bars = [_real(case, path, None) for path in _bar_paths()]
     for path in COMPARED if job.compared else ():
         found = _field(case, path)
         if found is not None:
@@ -247,10 +286,42 @@ def _observable_paths() -> list[bytes]:
     return [text_for(f"observables/{name}") for name in observables()]
 
 
-def _real(case: Case, path: bytes) -> float:
-    """A number; NaN if the case does not have it."""
+@functools.cache
+def _bar_paths() -> list[bytes]:
+    return [text_for(f"error_estimate/{name}_error") for name in observables()]
+
+
+def not_resolved(warnings: str) -> list[str]:
+    """The observables that warnings call not resolved, by their own names or by those of the quantities and groups that stand for them
+    (mfv_resolution, `named_as`)."""
+    words = {word for found in re.findall(NOT_RESOLVED + " ([^;]*);", warnings) for word in found.split(", ")}
+    return [name for name in observables() if words.intersection(_stand_for(name))]
+
+
+@functools.cache
+def _stand_for(observable: str) -> frozenset[str]:
+    """What a warning may name in place of an observable, itself included."""
+    name = FACTORS.get(observable, observable)
+    names = {name, NAMED_AS.get(name, name), re.sub("_tension_x$", "_tension", name)}
+    if name.startswith(("largest_", "smallest_")):
+        names.add("extremes")
+    elif name.endswith(("_loading", "_reversal", "_return", "_amplitude")) or name == "first_cycle_dissipation":
+        names.add("turning_points")
+    return frozenset(names)
+
+
+def _attribute(case: Case, name: str) -> str:
+    """An attribute; empty if the case does not have it."""
+    try:
+        return case._attribute(name)
+    except errors.BadArgument:
+        return ""
+
+
+def _real(case: Case, path: bytes, otherwise: Any = _NAN) -> Any:
+    """A number; `otherwise` if the case does not have it."""
     value = c_double(_NAN)
-    return value.value if library().mfv_copy_real(case._handle, path, byref(value), 1) == 0 else _NAN
+    return value.value if library().mfv_copy_real(case._handle, path, byref(value), 1) == 0 else otherwise
 
 
 def _field(case: Case, path: str) -> Field | None:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from .._files import written
 from .._library import library_version, outcome_of
 from .axes import Coordinate, as_written
-from .cases import COUNTS, DUNDURS_BETA, MOMENTS, TRACTIONS, Solved, key_info, observables
+from .cases import COUNTS, DUNDURS_BETA, MOMENTS, NOT_RESOLVED, TRACTIONS, Solved, key_info, observables
 from .plan import TITLE, Study, result_name
 
 if TYPE_CHECKING:
@@ -33,6 +33,11 @@ DIMENSIONS = {"x": "node", "record": "record", "companion_nodes": "companion_nod
 
 #: Types of columns by the types of their values; numbers are float.
 COLUMN_TYPES = {str: object, int: np.int32}
+
+#: Between the warnings of a case. The column with names of columns that are not resolved; meaning of error bars.
+BETWEEN, UNRESOLVED = " | ", "unresolved"
+UNRESOLVED_MEANING = "columns that the mesh does not resolve, separated by blanks"
+BAR = "estimated discretisation error, infinite if there is no limit, NaN if not resolved"
 
 _NAN = float("nan")
 
@@ -77,16 +82,28 @@ def frame_of(table: xarray.Dataset) -> pandas.DataFrame:
 def write(table: xarray.Dataset, path: str | os.PathLike[str]) -> None:
     """Write a dataset: as NetCDF (.nc, .h5), or as comma-separated values with one row per case (.csv). Raises OSError.
 
-    A text that a spreadsheet would take for a formula has an apostrophe before it in a CSV.
+    In a CSV the names of columns have their units, such as 'shift [mm]', and a text that a spreadsheet would take for a formula has
+    an apostrophe before it.
     """
     is_csv = Path(path).suffix.lower() == ".csv"
     # HDF5 can hang on a full disk, so the file is made in memory.
-    content = _inert(frame_of(table)).to_csv(index=False).encode() if is_csv else bytes(table.to_netcdf(engine="h5netcdf"))
+    content = _inert(_with_units(table)).to_csv(index=False).encode() if is_csv else bytes(table.to_netcdf(engine="h5netcdf"))
     try:
         with written(Path(path)) as part:
             part.write_bytes(content)
     except OSError as error:
         raise OSError(error.errno, f"{os.fspath(path)}: cannot be written: {error.strerror}") from error
+
+
+def _with_units(table: xarray.Dataset) -> pandas.DataFrame:
+    """The dataset as a data frame whose columns have names with units."""
+    return frame_of(table).rename(columns=lambda name: label(table, name))
+
+
+def label(table: xarray.Dataset, name: str) -> str:
+    """The name of a column with its unit, if it has one: 'shift [mm]'."""
+    unit = table[name].attrs.get("units", "1") if name in table.variables else "1"
+    return name if unit == "1" else f"{name} [{unit}]"
 
 
 def _inert(frame: pandas.DataFrame) -> pandas.DataFrame:
@@ -113,7 +130,12 @@ def _columns(study: Study, keys: Sequence[str], solved: Sequence[Solved | None])
         ),
         ("status", [one.status for one in there], "1", "code of the outcome, 0 for complete (mfv_status.def)"),
         ("message", [one.message for one in there], "1", "message of the outcome"),
+        ("warnings", [one.warnings.replace("\n", BETWEEN) for one in there], "1", f"warnings, separated by{BETWEEN.rstrip()}"),
+        (UNRESOLVED, [" ".join(_unresolved(study, number, there)) for number in range(len(there))], "1", UNRESOLVED_MEANING),
     ]
+    if any(one.error_estimate for one in there):
+        meaning = "'yes' with error bars, or why there are none"
+        columns.append(("error_estimate", [one.error_estimate for one in there], "1", meaning))
     for name, meaning in {**COUNTS, "nodes": "number of mesh nodes"}.items():
         columns.append((name, [one.counts[name] for one in there], "1", meaning))
     residuals = [one.largest_residual for one in there]
@@ -121,6 +143,9 @@ def _columns(study: Study, keys: Sequence[str], solved: Sequence[Solved | None])
     for place, (name, (unit, meaning)) in enumerate(observables().items()):
         if study.observables is None or name in study.observables:
             columns.append((name, [one.observables[place] for one in there], unit, meaning))
+            bars = [one.bars[place] if one.bars else None for one in there]
+            if any(bar is not None for bar in bars):
+                columns.append((f"{name}_error", [_NAN if bar is None else bar for bar in bars], unit, f"{BAR}: {meaning}"))
     if study.reference is not None:
         columns += _errors(study, there)
     if study.results is not None:
@@ -128,6 +153,32 @@ def _columns(study: Study, keys: Sequence[str], solved: Sequence[Solved | None])
         files = [os.path.join(folder, result_name(key)) if one.counts["nodes"] else "" for key, one in zip(keys, there)]
         columns.append(("result_file", files, "1", "result file of the case"))
     return columns
+
+
+def _unresolved(study: Study, place: int, solved: Sequence[Solved]) -> list[str]:
+    """The columns of a case that the mesh, or that of its reference, does not resolve. `place`: from 0."""
+    names = solved[place].unresolved.split()
+    kept = [name for name in names if study.observables is None or name in study.observables]
+    if study.reference is not None:
+        reference = solved[study.number_of_reference(place + 1) - 1].unresolved.split()
+        kept += ["dissipation_ratio"] * ("cycle_dissipation" in (*names, *reference))
+    return kept
+
+
+def flagged(table: xarray.Dataset, name: str) -> xarray.DataArray:
+    """For each case of a study, whether a column is in doubt: its mesh does not resolve it, or a warning is about more than the mesh.
+
+    `table[name].where(~flagged(table, name))` has NaN in place of such values. Raises KeyError for an unknown column.
+    """
+    table[name]
+
+    def is_flagged(warnings: str, unresolved: str) -> bool:
+        return name in unresolved.split() or any(NOT_RESOLVED not in one for one in warnings.split(BETWEEN) if one)
+
+    found: xarray.DataArray = xarray.apply_ufunc(
+        is_flagged, table["warnings"], table[UNRESOLVED], vectorize=True, output_dtypes=[bool]
+    )
+    return found
 
 
 def _errors(study: Study, solved: Sequence[Solved]) -> list[tuple[str, list[Any], str, str]]:
@@ -260,5 +311,6 @@ def _attributes(study: Study, solved: Sequence[Solved | None], units: dict[str, 
     for number, base in enumerate(study.bases, start=1):
         attributes |= {f"base_{number}": base.text, f"base_{number}_file": base.name}
     attributes |= {"length_unit": units["length"], "force_unit": units["force"]}
+    attributes["cases_flagged"] = sum(bool(one.warnings) for one in solved if one is not None)
     attributes |= {"complete": int(None not in solved), "cases": len(solved), "cases_done": sum(outcomes.values())}
     return attributes | {f"cases_{outcome.replace(' ', '_')}": count for outcome, count in sorted(outcomes.items())}

@@ -39,8 +39,11 @@ if TYPE_CHECKING:
     import xarray
 
 #: Columns of every study and dimensions of fields; axes cannot have these names.
-TAKEN = ("case", "base", "outcome", "status", "message", "steps_done", "events", "linear_solves", "nodes", "largest_residual",
-         "row", "node", "record", "cycle", "patch", "companion_node", "result_file")  # fmt: skip
+TAKEN = ("case", "base", "outcome", "status", "message", "warnings", "unresolved", "error_estimate", "steps_done", "events",
+         "linear_solves", "nodes", "largest_residual", "row", "node", "record", "cycle", "patch", "companion_node", "result_file")  # fmt: skip
+
+#: Key of a case for error bars.
+ERROR_ESTIMATE = "output%error_estimate"
 
 #: Title of the table of a study.
 TITLE = "Study over cases of frictional contact"
@@ -60,6 +63,7 @@ def study(
     fields: str | Iterable[str] = (),
     reference: str | Mapping[str, Any] | None = None,
     results: str | os.PathLike[str] | None = None,
+    error_estimate: bool = False,
     executor: str | Executor = "threads",
     workers: int | None = None,
     store: str | os.PathLike[str] | None = None,
@@ -67,7 +71,9 @@ def study(
     progress: bool = False,
 ) -> xarray.Dataset:
     """Solve many cases that differ in some values; for the arguments see `Study` and `Study.run`."""
-    planned = Study(base, axes, observables=observables, fields=fields, reference=reference, results=results)
+    planned = Study(
+        base, axes, observables=observables, fields=fields, reference=reference, results=results, error_estimate=error_estimate
+    )
     return planned.run(executor=executor, workers=workers, store=store, again=again, progress=progress)
 
 
@@ -83,6 +89,7 @@ class Study:
         fields: str | Iterable[str] = (),
         reference: str | Mapping[str, Any] | None = None,
         results: str | os.PathLike[str] | None = None,
+        error_estimate: bool = False,
     ) -> None:
         """`base`: a Scene or the path of a case; several of them, which become the first axis, 'base'; or a function that returns
         a Scene for a dict with the value of every axis.
@@ -95,7 +102,8 @@ class Study:
         `observables`: names of the observables in the dataset; by default all. `fields`: paths of fields of each case, such
         as 'state/pressure'. `reference`: 'full', or an axis with one of its values, {'mesh%nodes': 1001}: the tractions of
         each case are compared with those of the case that is the same but for this. `results`: a folder for the result file
-        of every case. Raises InputError for keys, names and factors that cannot be; OSError for a base that cannot be read.
+        of every case. `error_estimate`: error bars of the observables from coarser meshes, about twice the time; as
+        error_estimate in &output of the base. Raises InputError for keys, names and factors that cannot be; OSError for a base that cannot be read.
         """
         self.makes_scenes: Callable[[dict[str, Any]], Scene] | None = base if callable(base) else None
         given = [] if callable(base) else [base] if isinstance(base, (Scene, str, os.PathLike, Base)) else list(base)
@@ -117,6 +125,7 @@ class Study:
         #: Folder of result files, and the folder to which their paths in the dataset are relative (None: as given).
         self.results = None if results is None else Path(results)
         self.results_from: Path | None = None
+        self.error_estimate = error_estimate
         #: The text of the study and its file; the file of its table, and whether it saves result files.
         self.input, self.input_file, self.file, self.keeps_results = "", "", "", False
         self._is_checked = False
@@ -189,7 +198,8 @@ class Study:
             which = places[0] if len(self.bases) > 1 else 0
             base, shared = self.bases[which], self._shared[which]
         named = {key: absolute(value, base) if key in FILE_KEYS else value for key, value in settings}
-        return Job(base, tuple({**shared, **named}.items()), self.wanted_fields, self.reference is not None)
+        bars = {ERROR_ESTIMATE: True} if self.error_estimate else {}
+        return Job(base, tuple({**bars, **shared, **named}.items()), self.wanted_fields, self.reference is not None)
 
     @functools.cached_property
     def _datum(self) -> float:
@@ -344,7 +354,7 @@ class Study:
         for place, coordinate in enumerate(self.coordinates):
             name = coordinate.name
             is_ours = name in ("base", "row") and not coordinate.keys
-            if not is_ours and (name in taken or "_error_" in name or name == "dissipation_ratio"):
+            if not is_ours and (name in taken or "_error" in name or name == "dissipation_ratio"):
                 raise fault(f"{name} is a column of every study; choose another name", place, "name")
             if name in seen:
                 raise fault(f"{name} is the name of another axis; choose another name", place, "name")

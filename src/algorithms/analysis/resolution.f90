@@ -48,15 +48,17 @@ contains
    subroutine add_unresolved(unresolved, quantities, why, remedy)
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
       character(*), intent(in) :: quantities, why, remedy
-      character(:), allocatable :: list
+      character(:), allocatable :: list, names
       integer :: i
 
       list = ''
+      ! A variable: gfortran 12 keeps the length of an untrimmed text in trim() within these constructors.
+      names = trim(quantities)
       do i = 1, len_trim(quantities)
          if (quantities(i:i) == ' ') list = list//','
          list = list//quantities(i:i)
       end do
-      unresolved = [unresolved, unresolved_type(trim(quantities), why//'; not resolved: '//list//'; '//remedy)]
+      unresolved = [unresolved, unresolved_type(names, why//'; not resolved: '//list//'; '//remedy)]
    end subroutine add_unresolved
 
    !> Whether an observable is among those that are not resolved, by its name or by that of a quantity or a group that it belongs
