@@ -1,5 +1,6 @@
 !> Profiles from measured points: scaled, centred and levelled.
 module mfv_profile
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use mfv_body, only: body_type, interpolation_unset, new_profile
    use mfv_error, only: error_type, set_error
    use mfv_kinds, only: wp
@@ -21,6 +22,8 @@ module mfv_profile
       integer :: level = level_none, interpolation = interpolation_unset
       !> Whether the middle of the positions is moved to x = 0.
       logical :: centred = .false.
+      !> Whether position_scale is given, the distance of heights without positions.
+      logical :: has_spacing = .false.
    end type trace_type
 
    !> Minimum for Steffen's interpolation.
@@ -28,33 +31,40 @@ module mfv_profile
 
 contains
 
-   !> The profile through measured points: increasing positions and the recess there; shape (points). Error MFV_INPUT_ERROR
-   !> for fewer than 3 points, and for scales with which numbers are too large or points coincide.
+   !> The profile through measured points: increasing positions and the recess there; shape (points). Points without a value (NaN) are
+   !> left out and counted. Error MFV_INPUT_ERROR for fewer than 3 others, and for scales with which numbers are too large or points
+   !> coincide.
    subroutine profile_of_points(positions, heights, trace, body, error)
       real(wp), intent(in) :: positions(:), heights(:)
       type(trace_type), intent(in) :: trace
       type(body_type), intent(out) :: body
       type(error_type), allocatable, intent(out) :: error
       real(wp), allocatable :: x(:), height(:)
+      logical :: given(size(positions))
       integer :: n
 
-      n = size(positions)
+      given = .not. (ieee_is_nan(positions) .or. ieee_is_nan(heights))
+      n = count(given)
       if (n < fewest_points) then
-         call set_error(error, MFV_INPUT_ERROR, 'needs at least '//to_text(fewest_points)//' points; it has '//to_text(n))
+         call set_error(error, MFV_INPUT_ERROR, 'needs at least '//to_text(fewest_points)//' points; it has '//to_text(n)// &
+                        trim(merge(' with values', '            ', n < size(given))))
          return
       end if
-      if (any(abs(positions) > largest_size/max(trace%position_scale, 1.0_wp)) .or. &
-          any(abs(heights) > largest_size/max(abs(trace%height_scale), 1.0_wp))) then
+      x = pack(positions, given)
+      height = pack(heights, given)
+      if (any(abs(x) > largest_size/max(trace%position_scale, 1.0_wp)) .or. &
+          any(abs(height) > largest_size/max(abs(trace%height_scale), 1.0_wp))) then
          call set_error(error, MFV_INPUT_ERROR, 'with position_scale and height_scale, '//reasonable_sizes)
          return
       end if
-      x = trace%position_scale*positions
-      height = trace%height_scale*heights
+      x = trace%position_scale*x
+      height = trace%height_scale*height
       if (trace%centred) x = x - 0.5_wp*(x(1) + x(n))
       if (trace%level == level_mean) height = height - sum(height)/n
       if (trace%level == level_line) call remove_line(x, height)
       if (all(x(2:) > x(:n - 1))) then
          body = new_profile(x, height, trace%interpolation)
+         body%dropouts = size(given) - n
       else
          call set_error(error, MFV_INPUT_ERROR, 'with position_scale and centred, points coincide')
       end if

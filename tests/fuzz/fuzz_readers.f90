@@ -7,10 +7,11 @@ module fuzz_readers
    use mfv_kinds, only: wp
    use mfv_matrix_file, only: read_matrix_body
    use mfv_profile, only: trace_type
-   use mfv_profile_file, only: read_profile, read_table
+   use mfv_profile_file, only: read_profile
    use mfv_status, only: MFV_COMPLETE
    use mfv_stress_file, only: add_stresses, stress_request_type, stress_result_type
    use mfv_strings, only: copy_to_c, from_c
+   use mfv_table_file, only: read_named_table, read_table
    implicit none
    private
 
