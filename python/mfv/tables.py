@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import input_error
+from .errors import MfvError, input_error
 
 Array = NDArray[np.float64]
 
@@ -37,6 +37,8 @@ _NO_VALUES = ("", "nan", "na", "n/a", "null", "bad", "-", "--", "---", "*", "***
 _QUOTED = r"\"[^\"]*\"|'[^']*'"
 #: Lines among which columns and decimal marks are recognised.
 _SAMPLE = 1000
+#: Bytes by which a file is recognised as a text.
+_START = 2**20
 
 
 # --- units ---
@@ -91,12 +93,12 @@ def is_force(unit: str) -> bool:
 
 
 def is_text(path: str | os.PathLike[str]) -> bool:
-    """Whether a file is a text in one of the known encodings. Raises OSError."""
+    """Whether a file begins like a text in one of the known encodings. Raises OSError."""
+    with open(path, "rb") as file:
+        start = file.read(_START)
     try:
-        _lines(path)
-    except Exception as error:
-        if isinstance(error, OSError):
-            raise
+        _lines_of(start, "")
+    except MfvError:
         return False
     return True
 
@@ -104,7 +106,11 @@ def is_text(path: str | os.PathLike[str]) -> bool:
 def _lines(path: str | os.PathLike[str]) -> list[str]:
     """The lines of a text file. Raises OSError; InputError with line and column for a file that is not a text."""
     with open(path, "rb") as file:
-        data = file.read()
+        return _lines_of(file.read(), os.fspath(path))
+
+
+def _lines_of(data: bytes, name: str) -> list[str]:
+    """The lines of a text. Raises InputError."""
     zeros = [byte == 0 for byte in data[:4]]
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         text = data[: len(data) // 2 * 2].decode("utf-16", "replace")
@@ -115,12 +121,12 @@ def _lines(path: str | os.PathLike[str]) -> list[str]:
             text = data.decode("utf-8-sig")
         except UnicodeDecodeError:
             text = data.decode("latin-1")
-    text = re.sub("\r*\n|\r+", "\n", text.removesuffix("\x1a") if hasattr(text, "removesuffix") else text)
+    text = re.sub("\r*\n|\r+", "\n", text[:-1] if text.endswith("\x1a") else text)
     text = text.replace("\u2212", "-").replace("\u00a0", " ").replace("\f", " ")
     control = re.search(r"[\x00-\x08\x0b-\x1f\x7f]", text)
     if control:
         line, column = text.count("\n", 0, control.start()) + 1, control.start() - text.rfind("\n", 0, control.start())
-        raise input_error(f"{os.fspath(path)}:{line}:{column}: not a text file: control character {ord(control[0])}")
+        raise input_error(f"{name}:{line}:{column}: not a text file: control character {ord(control[0])}")
     return text.split("\n")
 
 

@@ -9,10 +9,10 @@ module mfv_profile
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: trace_type, profile_of_points, level_none, level_mean, level_line
+   public :: trace_type, profile_of_points, level_none, level_mean, level_line, level_parabola
 
-   !> Levelling of heights, in the order of the key &body level: none, by their mean, or by the least-squares line.
-   integer, parameter :: level_none = 1, level_mean = 2, level_line = 3
+   !> Levelling of heights, in the order of the key &body level: none, by their mean, or by the least-squares line or parabola.
+   integer, parameter :: level_none = 1, level_mean = 2, level_line = 3, level_parabola = 4
 
    !> Settings that turn measured points into a profile.
    type :: trace_type
@@ -61,7 +61,7 @@ contains
       height = trace%height_scale*height
       if (trace%centred) x = x - 0.5_wp*(x(1) + x(n))
       if (trace%level == level_mean) height = height - sum(height)/n
-      if (trace%level == level_line) call remove_line(x, height)
+      if (trace%level >= level_line) call remove_polynomial(trace%level - level_mean, x, height)
       if (all(x(2:) > x(:n - 1))) then
          body = new_profile(x, height, trace%interpolation)
          body%dropouts = size(given) - n
@@ -70,16 +70,20 @@ contains
       end if
    end subroutine profile_of_points
 
-   !> Subtract the least-squares line from heights.
-   pure subroutine remove_line(x, height)
+   !> Subtract the least-squares line (degree 1) or parabola (2) from heights.
+   pure subroutine remove_polynomial(degree, x, height)
+      integer, intent(in) :: degree
       real(wp), intent(in) :: x(:)
       real(wp), intent(inout) :: height(:)
-      real(wp) :: from_middle(size(x)), scale
+      real(wp) :: line(size(x)), parabola(size(x)), scale
 
       scale = maxval(abs(x))
-      from_middle = x/scale - sum(x/scale)/size(x)
+      line = x/scale - sum(x/scale)/size(x)
+      parabola = line**2 - sum(line**2)/size(x)
+      parabola = parabola - sum(line*parabola)/sum(line**2)*line
       height = height - sum(height)/size(x)
-      height = height - sum(from_middle*height)/sum(from_middle**2)*from_middle
-   end subroutine remove_line
+      height = height - sum(line*height)/sum(line**2)*line
+      if (degree > 1) height = height - sum(parabola*height)/sum(parabola**2)*parabola
+   end subroutine remove_polynomial
 
 end module mfv_profile

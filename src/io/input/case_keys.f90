@@ -94,7 +94,7 @@ contains
                     'distance by which the surface recedes from the other body; negative if the file has heights towards '// &
                     'it', default='1')
       call keys%add('body', 'level', kind_choice, 'profile: subtracted from its heights: nothing, their mean, or their '// &
-                    'least-squares line', default='none', choices='none mean line')
+                    'least-squares line or parabola', default='none', choices='none mean line parabola')
       call keys%add('body', 'centred', kind_logical, 'profile: whether the middle of its positions is moved to x = 0', &
                     default='.false.')
    end subroutine add_body_keys
