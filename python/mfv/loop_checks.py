@@ -66,9 +66,12 @@ def doubts_about(
 
 def _runs_backwards(force: Array, shift: Array, turns: Sequence[int], noise: tuple[float, float]) -> bool:
     """Whether the work in complete cycles is negative by more than its noise."""
-    if len(turns) < 3:
+    if len(turns) >= 3:
+        rows = slice(turns[0], turns[len(turns) - 1 - (len(turns) - 1) % 2] + 1)
+    elif abs(force[-1] - force[0]) < 0.1 * np.ptp(force):
+        rows = slice(0, force.size)
+    else:
         return False
-    rows = slice(turns[0], turns[len(turns) - 1 - (len(turns) - 1) % 2] + 1)
     q, u = force[rows], shift[rows]
     closed_q, closed_u = np.append(q, q[0]), np.append(u, u[0])
     steps_q, steps_u = np.diff(closed_q), np.diff(closed_u)

@@ -76,15 +76,10 @@ def read(
         raise input_error(f"line: must be 'middle', 'mean' or a number from 1, not {line!r}")
     if along not in ("x", "y"):
         raise input_error(f"along: must be 'x' or 'y', not {along!r}")
-    fault: MfvError | None = None
-    if tables.is_text(path):
-        try:
-            x, height, x_unit, height_unit = tables.read_trace(path)
-        except MfvError as error:
-            fault = error
-    else:
-        fault = input_error(f"{name}: not a text file")
-    if fault is not None:
+    try:
+        tables.check_text(path)
+        x, height, x_unit, height_unit = tables.read_trace(path)
+    except MfvError as fault:
         x, height, x_unit = _of_instrument(path, fault, line, along, channel, notes)
         height_unit = x_unit
     x_scale, height_scale = _scales(name, unit, file_unit, x_unit, height_unit, notes)

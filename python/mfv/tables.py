@@ -92,12 +92,16 @@ def is_force(unit: str) -> bool:
 # --- lines ---
 
 
+def check_text(path: str | os.PathLike[str]) -> None:
+    """Raises InputError with line and column if a file does not begin like a text in one of the known encodings; OSError."""
+    with open(path, "rb") as file:
+        _lines_of(file.read(_START), os.fspath(path))
+
+
 def is_text(path: str | os.PathLike[str]) -> bool:
     """Whether a file begins like a text in one of the known encodings. Raises OSError."""
-    with open(path, "rb") as file:
-        start = file.read(_START)
     try:
-        _lines_of(start, "")
+        check_text(path)
     except MfvError:
         return False
     return True
@@ -205,8 +209,10 @@ def _row(line: str, columns: int, decimal_comma: bool) -> list[float] | None:
     if cells is None:
         return None
     values = [_value(cell, decimal_comma) for cell in cells]
-    if None in values or all(value != value for value in values):
+    if not cells or None in values:
         return None
+    if columns > 1 and all(value != value for value in values) and "nan" not in line.lower():
+        return None  # dashes alone may be a line of units
     return values  # type: ignore[return-value]
 
 

@@ -242,14 +242,14 @@ contains
       text = text(:n)
    end subroutine plain_text
 
-   !> Number of characters in UTF-8.
+   !> Number of characters in UTF-8, or of bytes after ASCII that are none.
    pure integer function characters(text)
       character(*), intent(in) :: text
       integer :: i
 
       characters = 0
       do i = 1, len(text)
-         if (iand(ichar(text(i:i)), 192) /= 128) characters = characters + 1
+         if (iand(ichar(text(i:i)), 192) /= 128 .or. ichar(text(max(i - 1, 1):max(i - 1, 1))) < 128) characters = characters + 1
       end do
    end function characters
 
@@ -293,6 +293,7 @@ contains
       shown = shortened(trim(adjustl(line)))
       call find_fault_of_text(shown, number, why)
       do i = 1, len(shown)
+         if (shown(i:i) == tab) shown(i:i) = ' '
          if (ichar(shown(i:i)) < 32 .or. ichar(shown(i:i)) == 127 .or. (why /= '' .and. ichar(shown(i:i)) > 127)) shown(i:i) = '?'
       end do
    end function shown
@@ -460,7 +461,7 @@ contains
       logical :: are_numbers
 
       n = size(table, 2)
-      are_numbers = abs(table(1, 1)*(table(1, 1) - 1.0_wp)) < round_off
+      are_numbers = n > 1 .and. abs(table(1, 1)*(table(1, 1) - 1.0_wp)) < round_off
       are_numbers = are_numbers .and. all([(abs(table(1, i) - table(1, 1) - (i - 1)) < round_off, i=1, n)])
       are_numbers = are_numbers .and. (all(table(2, 2:) > table(2, :n - 1)) .or. all(table(2, 2:) < table(2, :n - 1)))
       if (are_numbers) then
@@ -580,7 +581,7 @@ contains
    end function is_comment
 
    !> The numbers in a line, NaN for cells without a value. `bad`: 0, or the first byte of a cell that is not a number, beyond the line
-   !> if there are fewer or more cells, or none with a value.
+   !> if there are fewer or more cells.
    subroutine read_row(line, decimal_comma, values, bad)
       character(*), intent(in) :: line
       logical, intent(in) :: decimal_comma
@@ -600,7 +601,10 @@ contains
          call read_cell(line(from(i):to(i)), decimal_comma, is_quoted(), values(i), is_right)
          if (.not. is_right .and. bad == 0) bad = from(i)
       end do
-      if (bad == 0 .and. (cells > size(values) .or. cells + spare < size(values) .or. all(ieee_is_nan(values)))) bad = len(line) + 1
+      if (bad > 0) return
+      if (cells == 0 .or. cells > size(values) .or. cells + spare < size(values)) bad = len(line) + 1
+      ! Dashes alone may be a line of units.
+      if (size(values) > 1 .and. all(ieee_is_nan(values)) .and. index(lower_case(line), 'nan') == 0) bad = len(line) + 1
 
    contains
 
