@@ -77,7 +77,7 @@ def _runs_backwards(force: Array, shift: Array, turns: Sequence[int], noise: tup
     steps_q, steps_u = np.diff(closed_q), np.diff(closed_u)
     work = float(np.sum(0.5 * (closed_q[1:] + closed_q[:-1]) * steps_u))
     error = noise[1] * np.sqrt(np.sum(steps_q**2)) + noise[0] * np.sqrt(np.sum(steps_u**2))
-    return work < -max(4.0 * error, 1e-6 * float(np.ptp(q) * np.ptp(u)))
+    return bool(work < -max(4.0 * error, 1e-6 * float(np.ptp(q) * np.ptp(u))))
 
 
 def _stiffness(force: Array, shift: Array, turns: Sequence[int]) -> float:

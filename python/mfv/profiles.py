@@ -86,20 +86,17 @@ def read(
     height = height_scale * height
     if x is None and spacing is None:
         raise input_error(f"{name}: has no distances between its heights; give spacing in {unit}")
-    if x is None:
-        x = float(spacing or 0.0) * np.arange(height.size)
-    elif spacing is not None:
+    if x is not None and spacing is not None:
         raise input_error(f"{name}: has positions; remove spacing")
-    else:
-        x = x_scale * x
+    place: Array = np.asarray(np.arange(height.size) * float(spacing or 0.0) if x is None else x_scale * x)
     if not np.any(np.isfinite(height)):
         raise input_error(f"{name}: no height has a value")
     for key, length in (("lambda_s", lambda_s), ("lambda_c", lambda_c)):
         if length is not None and not 0.0 < length < np.inf:
             raise input_error(f"{key}: must be a positive length in {unit}, not {length!r}")
     if lambda_s is not None or lambda_c is not None:
-        x, height = _filtered(x, height, lambda_s, lambda_c, notes)
-    return Profile(x, -height if outwards else height, unit, notes)
+        place, height = _filtered(place, height, lambda_s, lambda_c, notes)
+    return Profile(place, -height if outwards else height, unit, notes)
 
 
 def _scales(name: str, unit: str, given: str | None, x_unit: str, height_unit: str, notes: list[str]) -> tuple[float, float]:
@@ -135,7 +132,7 @@ def _of_instrument(
             info = reader.channels[number]
             sizes = None if info.physical_sizes is not None else tuple(float(n) for n in info.nb_grid_pts)
             map_ = reader.topography(channel_index=number, **({} if sizes is None else {"physical_sizes": sizes}))
-            heights = np.ma.filled(np.ma.asarray(map_.heights(), dtype=float), np.nan)
+            heights: Array = np.ma.filled(np.ma.asarray(map_.heights(), dtype=float), np.nan)
             positions = None if sizes is not None else map_.positions()
         except MfvError:
             raise

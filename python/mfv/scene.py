@@ -221,20 +221,21 @@ class Body(KeyGroup):
         cls, x: ArrayLike | str | os.PathLike[str], height: ArrayLike | None = None, **others: Unpack[OfMeasuredProfile]
     ) -> Body:
         """A nearly flat surface through points: positions `x`, increasing, and how far it recedes from the other body [length]; points
-        whose height is NaN are left out. A negative `height_scale` is for heights that are positive outwards.
+        whose height is NaN are omitted. A negative `height_scale` is for heights that are positive outwards.
 
         Or the profile in a file, a text or that of an instrument: `Body.profile("scan.opd", unit="mm")`, with the options of
         `mfv.profiles.read`; heights are positive outwards then. Its notes are warnings of Python. Raises OSError, InputError,
         ModuleNotFoundError.
         """
+        keys: dict[str, Any] = dict(others)
         if not isinstance(x, (str, os.PathLike)):
             if height is None:
                 raise TypeError("Body.profile needs x and height, or the name of a file")
-            return cls(shape="profile", data={"x": _numbers(x, "x"), "height": _numbers(height, "height")}, **others)
+            return cls(shape="profile", data={"x": _numbers(x, "x"), "height": _numbers(height, "height")}, **keys)
         if height is not None:
             raise TypeError("Body.profile takes the name of a file, or x and height, not both")
-        options = {name: others.pop(name) for name in profiles.Reading.__annotations__ if name in others}  # type: ignore[misc]
-        return cls(shape="profile", data=_measured(x, **options), **others)
+        options = {name: keys.pop(name) for name in profiles.Reading.__annotations__ if name in keys}
+        return cls(shape="profile", data=_measured(x, **options), **keys)
 
     @classmethod
     def matrix(

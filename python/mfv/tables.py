@@ -81,7 +81,9 @@ def _size(unit: str) -> tuple[float, str]:
         return FORCES[known], "force"
     if per and force in FORCES and length in LENGTHS:
         return FORCES[force] / LENGTHS[length], "force per length"
-    raise input_error(f"unknown unit '{unit}'; known are {', '.join(LENGTHS)}; {', '.join(FORCES)}; and forces per length, such as N/mm")
+    raise input_error(
+        f"unknown unit '{unit}'; known are {', '.join(LENGTHS)}; {', '.join(FORCES)}; and forces per length, such as N/mm"
+    )
 
 
 def is_force(unit: str) -> bool:
@@ -173,7 +175,7 @@ def _headings(line: str) -> list[str]:
     if not re.search("[;,\t]", text):
         cells = re.findall(rf"(?:{_QUOTED}|[^\s\[(]\S*)(?:\s+[\[(][^\])]*[\])])?|\S+", text)
     else:
-        cells, spare = _divided(text, True, by_tabs=True)
+        cells = _divided(text, True, by_tabs=True)[0]
     return [cell.strip("\"' \t") for cell in cells]
 
 
@@ -314,7 +316,9 @@ def _disorder(x: Array) -> int | None:
     """The first row in which positions turn or do not change; None for none."""
     given = np.flatnonzero(np.isfinite(x))
     steps = np.diff(x[given])
-    wrong = np.flatnonzero(steps * np.sign(steps[0]) <= 0.0) if len(steps) else []
+    if not len(steps):
+        return None
+    wrong = np.flatnonzero(steps * np.sign(steps[0]) <= 0.0)
     return int(given[wrong[0] + 1]) if len(wrong) else None
 
 
@@ -334,9 +338,9 @@ class Column:
         """The values as numbers; NaN for cells without one. Raises InputError."""
         found = []
         for value in np.atleast_1d(np.asarray(self.values)).tolist():
-            number = _value(value, self.decimal_comma) if isinstance(value, str) else value
+            number = _value(value, self.decimal_comma) if isinstance(value, str) else math.nan if value is None else value
             try:
-                found.append(math.nan if number is None and not isinstance(value, str) else float(number))
+                found.append(float(number))  # type: ignore[arg-type]  # TypeError for what is no number
             except (TypeError, ValueError):
                 raise input_error(f"{self.label}: {value!r} is not a number") from None
         return np.array(found)
@@ -366,9 +370,9 @@ def read_columns(path: str | os.PathLike[str], wanted: Names, optional: Sequence
     comma = sum(is_row(number, True) for number in below[:_SAMPLE]) > sum(is_row(number, False) for number in below[:_SAMPLE])
     units = [unit_of(heading) for heading in names]
     if below and header and not is_row(below[0], comma):  # a line of units
-        cells = _headings(lines[below[0] - 1])
-        if len(cells) == count and all(not cell or unit_of(cell) or cell[0] in "[(-" for cell in cells):
-            units = [unit_of(cell) or unit for cell, unit in zip(cells, units)]
+        written = _headings(lines[below[0] - 1])
+        if len(written) == count and all(not cell or unit_of(cell) or cell[0] in "[(-" for cell in written):
+            units = [unit_of(cell) or unit for cell, unit in zip(written, units)]
             del below[0]
     if not header:  # columns by number
         while below and not is_row(below[0], comma):

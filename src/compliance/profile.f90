@@ -31,9 +31,9 @@ module mfv_profile
 
 contains
 
-   !> The profile through measured points: increasing positions and the recess there; shape (points). Points without a value (NaN) are
-   !> left out and counted. Error MFV_INPUT_ERROR for fewer than 3 others, and for scales with which numbers are too large or points
-   !> coincide.
+   !> The profile through measured points: increasing positions and the recess there; shape (points). Points without a value (NaN)
+   !> are omitted and counted. Error MFV_INPUT_ERROR for fewer than 3 others, and for scales with which numbers are too large or
+   !> points coincide.
    subroutine profile_of_points(positions, heights, trace, body, error)
       real(wp), intent(in) :: positions(:), heights(:)
       type(trace_type), intent(in) :: trace

@@ -173,5 +173,7 @@ def test_without_the_package_the_message_has_the_line_that_installs_it(tmp_path:
         raise ModuleNotFoundError(f"the Python package {module} is not installed: pip install it", name=module)
 
     monkeypatch.setattr(profiles, "needed", absent)
-    with pytest.raises(ModuleNotFoundError, match=r"scan.x3p:1:\d+: not a text file.*; for files of instruments the Python package"):
+    with pytest.raises(
+        ModuleNotFoundError, match=r"scan.x3p:1:\d+: not a text file.*; for files of instruments the Python package"
+    ):
         profiles.read(path)

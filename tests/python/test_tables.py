@@ -81,7 +81,7 @@ def test_a_text_is_the_same_for_python_and_the_library(tmp_path: Path, name: str
     gaps = int(np.sum(~valued))
     assert bool(warned) == bool(gaps)
     if warned:
-        assert f"{gaps} of {len(X) + gaps} points of the profile of the upper body have no value and are left out" in warned[0]
+        assert f"{gaps} of {len(X) + gaps} points of the profile of the upper body have no value and are omitted" in warned[0]
 
 
 def test_heights_alone(tmp_path: Path) -> None:

@@ -71,5 +71,7 @@ def run(options: argparse.Namespace) -> None:
         file.write(heading)
         np.savetxt(file, np.column_stack([profile.x, profile.height]), fmt="%.9g")
     gaps = int(np.sum(~np.isfinite(profile.height)))
-    print(f"{path}: {profile.x.size} points over {np.ptp(profile.x):.4g} {profile.unit}{f', {gaps} without a value' if gaps else ''}")
+    print(
+        f"{path}: {profile.x.size} points over {np.ptp(profile.x):.4g} {profile.unit}{f', {gaps} without a value' if gaps else ''}"
+    )
     print(f"&body shape='profile', file='{path}', rigid=.true. /")

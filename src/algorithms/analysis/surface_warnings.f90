@@ -47,7 +47,7 @@ contains
 
          n = size(body%position)
          call add_text(warnings, to_text(body%dropouts)//' of '//to_text(n + body%dropouts)//' points of the profile of the '// &
-                       name//' body have no value and are left out; its points are now up to '// &
+                       name//' body have no value and are omitted; its points are now up to '// &
                        to_text(maxval(body%position(2:) - body%position(:n - 1)), 3)//' apart: check that what is missing '// &
                        'does not touch')
       end subroutine warn_of_dropouts

@@ -79,7 +79,8 @@ contains
       end do
    end function place_of
 
-   !> A dataset of one column and `count` rows (any number if negative). `with_gaps`: whether NaN is permitted. Error MFV_INPUT_ERROR.
+   !> A dataset of one column and `count` rows (any number if negative). `with_gaps`: whether NaN is permitted.
+   !> Error MFV_INPUT_ERROR.
    subroutine read_vector(self, file, name, count, values, error, with_gaps)
       class(case_data_type), intent(in) :: self
       character(*), intent(in) :: file, name

@@ -31,7 +31,7 @@ contains
          call read_table(path, 'x and height', 2, .true., table, error, is_trace=.true.)
          if (allocated(error)) then
             if (index(error%message, ': not a text file') > 0) error%message = error%message// &
-               '; write one: mfv profile '//path//' -o '//path(:name_end(path))//'.txt'
+                                                            '; write one: mfv profile '//path//' -o '//path(:name_end(path))//'.txt'
          end if
       end if
       if (allocated(error)) return

@@ -20,7 +20,7 @@ module mfv_table_file
    character(*), parameter :: blanks = ' '//tab, quotation_marks = '"''', digits = '0123456789'
    !> Cells without a value.
    character(len=4), parameter :: no_values(11) = [character(4) :: '', 'nan', 'na', 'n/a', 'null', 'bad', '-', '--', '---', '*', &
-                                                   '***']
+                                                                                                                   '***']
    !> Lines among which columns and decimal marks are recognised.
    integer, parameter :: lines_of_sample = 1000
 
@@ -298,8 +298,8 @@ contains
       end do
    end function shown
 
-   !> How the rows of a text are divided: its decimal mark, and the number of columns `found` with the longest run of rows: `columns`,
-   !> one more (row numbers), or for `is_trace` 1 (heights alone).
+   !> How the rows of a text are divided: its decimal mark, and the number of columns `found` with the longest run of rows:
+   !> `columns`, one more (row numbers), or for `is_trace` 1 (heights alone).
    subroutine recognise(text, columns, is_trace, found)
       type(text_type), intent(inout) :: text
       integer, intent(in) :: columns
@@ -494,7 +494,7 @@ contains
       real(wp) :: direction
       integer :: i
 
-      given = pack([(i, i=1, size(rows))], .not. ieee_is_nan(table(1, :)))
+      given = pack([(i, i=1, size(rows))],.not. ieee_is_nan(table(1, :)))
       if (size(given) < 2) return
       direction = sign(1.0_wp, table(1, given(2)) - table(1, given(1)))
       do i = 2, size(given)
@@ -508,8 +508,8 @@ contains
       if (direction < 0.0_wp) table = table(:, size(rows):1:-1)
    end subroutine order
 
-   !> The line with the names of the columns, 0 for none, and the decimal mark of the rows below it: the last line of text that has as
-   !> many names as the first row has numbers, or else the last one; or, without lines of text, a comment of that kind.
+   !> The line with the names of the columns, 0 for none, and the decimal mark of the rows below it: the last line of text that has
+   !> as many names as the first row has numbers, or else the last one; or, without lines of text, a comment of that kind.
    subroutine find_header(text, header, names)
       type(text_type), intent(inout) :: text
       integer, intent(out) :: header
@@ -580,8 +580,8 @@ contains
       end associate
    end function is_comment
 
-   !> The numbers in a line, NaN for cells without a value. `bad`: 0, or the first byte of a cell that is not a number, beyond the line
-   !> if there are fewer or more cells.
+   !> The numbers in a line, NaN for cells without a value. `bad`: 0, or the first byte of a cell that is not a number, beyond the
+   !> line if there are fewer or more cells.
    subroutine read_row(line, decimal_comma, values, bad)
       character(*), intent(in) :: line
       logical, intent(in) :: decimal_comma
@@ -635,8 +635,8 @@ contains
    end subroutine read_cell
 
    !> The cells of a line, without blanks and quotation marks around them: first and last byte of as many as fit, and how many there
-   !> are. Between them is one semicolon, or one tab if `by_tabs`, or one comma unless `decimal_comma`, or blanks: the first of these
-   !> that the line has before its end. `spare`: separators at the end of the line.
+   !> are. Between them is one semicolon, or one tab if `by_tabs`, or one comma unless `decimal_comma`, or blanks: the first of
+   !> these that the line has before its end. `spare`: separators at the end of the line.
    pure subroutine divide(line, decimal_comma, by_tabs, from, to, cells, spare)
       character(*), intent(in) :: line
       logical, intent(in) :: decimal_comma, by_tabs
