@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-#: A loop that is so many times as stiff as the contact is impossible, since a rig in series makes it softer; the datum of
-#: two-dimensional elasticity leaves the contact's stiffness uncertain by less.
+#: A loop cannot be stiffer than this times the contact, since a rig in series makes it softer; the arbitrary datum of
+#: two-dimensional elasticity changes the stiffness of the contact by less.
 _TOO_STIFF = 2.0
 
-#: A loop that is so many times as stiff as contact and rig is unlikely.
+#: A loop softer than this times contact and rig is unlikely.
 _TOO_SOFT = 1.0 / 30.0
 
 #: No pair of surfaces is known to have a larger coefficient of friction in fretting.

@@ -340,7 +340,7 @@ class Column:
         for value in np.atleast_1d(np.asarray(self.values)).tolist():
             number = _value(value, self.decimal_comma) if isinstance(value, str) else math.nan if value is None else value
             try:
-                found.append(float(number))  # type: ignore[arg-type]  # TypeError for what is no number
+                found.append(float(number))  # type: ignore[arg-type]  # TypeError for anything else
             except (TypeError, ValueError):
                 raise input_error(f"{self.label}: {value!r} is not a number") from None
         return np.array(found)

@@ -23,6 +23,8 @@ module mfv_table_file
                                                                                                                    '***']
    !> Lines among which columns and decimal marks are recognised.
    integer, parameter :: lines_of_sample = 1000
+   !> A line with more cells than this has no names of columns.
+   integer, parameter :: most_names = 1000
 
    !> The lines of a file and how they are divided.
    type :: text_type
@@ -68,6 +70,7 @@ contains
       if (allocated(error)) return
       text%names = names
       call recognise(text, columns, with_gaps, found)
+      if (found < columns) text%names = 'a height, or two, '//names
       call text%parse(1, found, with_gaps, table, rows, error)
       if (allocated(error)) return
       if (found == columns + 1) call drop_row_numbers(text, rows, table, error)
@@ -515,7 +518,7 @@ contains
       integer, intent(out) :: header
       type(string_type), allocatable, intent(out) :: names(:)
       integer, allocatable :: lines(:)
-      integer :: i, mark, row
+      integer :: i, mark, row, first
 
       lines = [integer ::]
       do i = 1, size(text%first)
@@ -530,7 +533,9 @@ contains
             header = lines(row)
             call read_names(text%line(header), names)
             if (size(names) == 0) cycle
-            if (i <= size(text%first) .and. text%first_row(i, size(names)) == i) return
+            if (i > size(text%first)) cycle
+            first = text%first_row(i, size(names))
+            if (first == i) return
          end do
       end do
       text%decimal_comma = .false.
@@ -545,12 +550,13 @@ contains
    subroutine read_names(line, names)
       character(*), intent(in) :: line
       type(string_type), allocatable, intent(out) :: names(:)
-      integer :: from(len(line) + 1), to(len(line) + 1), cells, spare, start, i
+      integer :: from(most_names), to(most_names), cells, spare, start, i
 
       start = 1
       if (is_comment(line)) start = max(1, verify(line, blanks//'#!%/'))
       call divide(line(start:), .true., .false., from, to, cells, spare)
       allocate (names(0))
+      if (cells > most_names) return
       do i = 1, cells
          call add_text(names, shown(line(start + from(i) - 1:start + to(i) - 1)))
       end do
@@ -634,9 +640,9 @@ contains
       if (len(cell) <= len(no_values)) is_right = any(lower_case(cell) == no_values)
    end subroutine read_cell
 
-   !> The cells of a line, without blanks and quotation marks around them: first and last byte of as many as fit, and how many there
-   !> are. Between them is one semicolon, or one tab if `by_tabs`, or one comma unless `decimal_comma`, or blanks: the first of
-   !> these that the line has before its end. `spare`: separators at the end of the line.
+   !> The cells of a line, without blanks and quotation marks around them: first and last byte of each, and how many there are,
+   !> at most one more than fit. Between them is one semicolon, or one tab if `by_tabs`, or one comma unless `decimal_comma`, or
+   !> blanks: the first of these that the line has before its end. `spare`: separators at the end of the line.
    pure subroutine divide(line, decimal_comma, by_tabs, from, to, cells, spare)
       character(*), intent(in) :: line
       logical, intent(in) :: decimal_comma, by_tabs
@@ -663,7 +669,8 @@ contains
          at = skip(at)
          next = end_of_cell(at)
          cells = cells + 1
-         if (cells <= size(from)) call trim_cell(at, next - 1, from(cells), to(cells))
+         if (cells > size(from)) return
+         call trim_cell(at, next - 1, from(cells), to(cells))
          at = next + 1
          if (mark == ' ' .and. at <= length) at = skip(at)
       end do
@@ -677,6 +684,7 @@ contains
          character(len=1) :: open
 
          has = .false.
+         if (index(line(:length), character) == 0) return
          open = ' '
          do i = 1, length
             if (open /= ' ') then
