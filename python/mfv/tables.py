@@ -32,7 +32,8 @@ _OTHER_NAMES = {"micron": "um", "microns": "um", "inch": "in", "mils": "mil"} | 
     for plural in ("", "s")
 }
 
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?")
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?", re.ASCII)
+_WHOLE = re.compile(r"\s*[0-9]+\s*")
 _NO_VALUES = ("", "nan", "na", "n/a", "null", "bad", "-", "--", "---", "*", "***")
 _QUOTED = r"\"[^\"]*\"|'[^']*'"
 #: Lines among which columns and decimal marks are recognised.
@@ -117,16 +118,16 @@ def _lines(path: str | os.PathLike[str]) -> list[str]:
 
 def _lines_of(data: bytes, name: str) -> list[str]:
     """The lines of a text. Raises InputError."""
-    zeros = [byte == 0 for byte in data[:4]]
+    zeros, pairs = [byte == 0 for byte in data[:4]], data[: len(data) // 2 * 2]
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        text = data[: len(data) // 2 * 2].decode("utf-16", "replace")
+        text = pairs.decode("utf-16", "replace")
     elif zeros in ([False, True, False, True], [True, False, True, False]):
-        text = data.decode("utf-16-le" if zeros[1] else "utf-16-be", "replace")
+        text = pairs.decode("utf-16-le" if zeros[1] else "utf-16-be", "replace")
     else:
         try:
             text = data.decode("utf-8-sig")
         except UnicodeDecodeError:
-            text = data.decode("latin-1")
+            text = data.replace(b"\xe2\x88\x92", b"-").replace(b"\xc2\xa0", b" ").decode("latin-1")
     text = re.sub("\r*\n|\r+", "\n", text[:-1] if text.endswith("\x1a") else text)
     text = text.replace("\u2212", "-").replace("\u00a0", " ").replace("\f", " ")
     control = re.search(r"[\x00-\x08\x0b-\x1f\x7f]", text)
@@ -166,7 +167,7 @@ def _divided(line: str, decimal_comma: bool, by_tabs: bool = False) -> tuple[lis
         mark = ","
     else:
         return re.findall(rf"{_QUOTED}|\S+", bare), spare
-    return [cell.strip() for cell in re.findall(rf"(\s*(?:{_QUOTED})?[^{mark}]*){mark}", bare + mark)], spare
+    return [cell.strip() for cell in re.findall(rf"([ ]*(?:{_QUOTED})?[^{mark}]*){mark}", bare + mark)], spare
 
 
 def _headings(line: str) -> list[str]:
@@ -259,7 +260,8 @@ def read_trace(path: str | os.PathLike[str]) -> Trace:
     units = [""] * (2 - len(units)) + units
     if table.shape[1] == 1:
         return Trace(None, table[:, 0], "", units[-1])
-    if np.nanmax(np.diff(table[:, 0][np.isfinite(table[:, 0])]), initial=-1.0) < 0.0:
+    x = table[:, 0][np.isfinite(table[:, 0])]
+    if x.size > 1 and x[0] > x[-1]:
         table = table[::-1]
     return Trace(table[:, 0].copy(), table[:, 1].copy(), units[0], units[1])
 
@@ -284,7 +286,7 @@ def _block(name: str, lines: Sequence[str], columns: int, comma: bool) -> tuple[
     head = [number for number in used if number < start or not start]
     last_heading = max((number for number in head if _is_heading(lines[number - 1])), default=0)
     rest = [number for number in head if number > last_heading or not start]
-    counted = rest[0] if len(rest) == 1 and start and lines[rest[0] - 1].strip().isdigit() else 0
+    counted = rest[0] if len(rest) == 1 and start and _WHOLE.fullmatch(lines[rest[0] - 1]) else 0
     if rest and not counted:
         raise _no_row(name, rest[0], lines)
     rows, numbers = [], [number for number in used if number >= start > 0]
@@ -308,8 +310,8 @@ def _is_numbering(table: Array) -> bool:
 
 def _is_count(lines: Sequence[str], numbers: Sequence[int], table: Array) -> bool:
     """Whether the first of the heights is their number."""
-    written = [lines[number - 1].strip() for number in numbers[:2]]
-    return len(written) == 2 and written[0].isdigit() and not written[1].isdigit() and abs(table[0, 0] - len(table) + 1) < 1.5
+    are_whole = [bool(_WHOLE.fullmatch(lines[number - 1])) for number in numbers[:2]]
+    return are_whole == [True, False] and bool(abs(table[0, 0] - len(table) + 1) < 1.5)
 
 
 def _disorder(x: Array) -> int | None:

@@ -252,7 +252,8 @@ contains
 
       characters = 0
       do i = 1, len(text)
-         if (iand(ichar(text(i:i)), 192) /= 128 .or. ichar(text(max(i - 1, 1):max(i - 1, 1))) < 128) characters = characters + 1
+         if (i == 1 .or. iand(ichar(text(i:i)), 192) /= 128 .or. ichar(text(max(i - 1, 1):max(i - 1, 1))) < 128) &
+            characters = characters + 1
       end do
    end function characters
 
