@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 
 from .._files import target, written
-from .completion import complete_files
 from .shared import add_output
 
 NAME, HELP = "profile", "write the profile in a file of an instrument as a text"
@@ -34,7 +33,7 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    complete_files(parser.add_argument("file", type=Path, metavar="SCAN", help="text, or file of an instrument"), "txt")
+    parser.add_argument("file", type=Path, metavar="SCAN", help="text, or file of an instrument")
     add_output(parser, "FILE.txt", "text to write (default: SCAN with .txt)")
     parser.add_argument("--unit", default="mm", help="unit of length of the case, and of the options (default: mm)")
     parser.add_argument("--file-unit", metavar="UNIT", help="unit of length of a file that names none (default: --unit)")
