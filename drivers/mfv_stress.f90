@@ -6,7 +6,7 @@ program mfv_stress
    use mfv_kinds, only: wp
    use mfv_output, only: begin_program, print_text
    use mfv_numbers, only: read_real
-   use mfv_profile_file, only: read_table
+   use mfv_table_file, only: read_table
    use mfv_stress_file
    use mfv_strings, only: shortened, to_text
    use mfv_stress_text, only: list_stresses, summarize_stresses

@@ -117,8 +117,8 @@ int mfv_scene_make_room(mfv_scene *scene, const char *key);
 
 /* Data in memory instead of a file: they are used for file='NAME' or mu_file='NAME' in the scene if `file` is NAME. Each column of
  * a text file is a dataset with one column: "x" and "height" of a profile, "x" and "mu" (or "mu_static" and "mu_kinetic") of
- * coefficients of friction. Matrix bodies have the datasets of their HDF5 file: "x", "gap", "width", and "compliance" or
- * "stiffness" (values[row*columns + column]). Values are copied. Since 0.1.0. */
+ * coefficients of friction; a height may be NaN, no value. Matrix bodies have the datasets of their HDF5 file: "x", "gap", "width",
+ * and "compliance" or "stiffness" (values[row*columns + column]). Values are copied. Since 0.1.0. */
 int mfv_scene_set_data(mfv_scene *scene, const char *file, const char *dataset, size_t rows, size_t columns,
                        const double *values);
 

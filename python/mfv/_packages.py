@@ -20,6 +20,7 @@ TOGETHER = (
     ("scipy",),
     ("scipy", "emcee"),
     ("scipy", "pylife"),
+    ("SurfaceTopography", "scipy"),
 )
 
 

@@ -18,9 +18,11 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from . import tables
 from ._datum import datums_of, with_datums
 from ._packages import needed
 from .errors import MfvError, input_error
+from .loop_checks import doubts_about
 from .scene import Output, Scene, Step
 from .studies.axes import Axis
 
@@ -143,56 +145,99 @@ class Loop:
 
 
 def read(path: str | os.PathLike[str], **options: Any) -> list[Loop]:
-    """The loops of a text file with comma-separated columns Q, U and P (or tangential_force, shift, normal_force) under a line with
-    their names; a column `test` separates several tests. Lines beginning with # are comments. `options`: those of every `Loop`.
+    """The loops of a text file: columns Q, U and P (or tangential_force, shift, normal_force) under a line with their names, which may
+    have units, as spreadsheets and programs write them (`mfv.tables`); a column `test` separates several tests. `options`: those of
+    `loops_of`.
 
     Raises OSError, InputError.
     """
-    name = os.fspath(path)
-    try:
-        with open(path, encoding="utf-8") as file:
-            lines = [text for line in file if (text := line.partition("#")[0].strip())]
-    except UnicodeDecodeError:
-        raise input_error(f"{name}: not a text file in UTF-8") from None
-    names, *rows = [[cell.strip() for cell in line.split(",")] for line in lines] or [[]]
-    if not rows:
-        raise input_error(f"{name}: no rows; needs a line with the names of the columns, such as Q,U,P, and rows of numbers")
-    if any(len(row) != len(names) for row in rows):
-        raise input_error(f"{name}: not a table: its rows have different numbers of comma-separated columns")
-    return loops_of(dict(zip(names, zip(*rows))), **{"name": name, **options})
+    columns = _names_of(options.get("columns"))
+    optional = ["test", *(["normal_force"] if options.get("normal_force") is not None else [])]
+    return _loops(tables.read_columns(path, columns, optional), **{"name": os.fspath(path), **options})
 
 
 def loops_of(table: Any, **options: Any) -> list[Loop]:
-    """The loops of a table: a mapping of columns, or a pandas.DataFrame; columns and options as in `read`. Raises InputError."""
+    """The loops of a table: a mapping of columns, or a pandas.DataFrame.
+
+    `columns`: names of columns (or for a file their numbers from 1) by their meaning, such as {'tangential_force': 'Fx', 'shift': 3}.
+    `normal_force`: instead of a column P, force per thickness. `units`: units of columns by their meaning, if not in their names;
+    numbers without any are taken as they are. `length_unit`, `force_unit` ('mm' and 'N'): those of the scene. `thickness`, in
+    `length_unit`: divides columns that are forces. `sign`: factors of columns by their meaning, such as {'shift': -1}. Other options
+    are those of every `Loop`. Raises InputError.
+    """
     label = options.pop("name", "table")
-    found = {str(name).strip().lower(): name for name in (table.columns if hasattr(table, "columns") else table)}
-    columns = {meaning: next((found[name] for name in names if name in found), None) for meaning, names in _COLUMNS.items()}
-    missing = [names[-1].upper() for meaning, names in _COLUMNS.items() if columns[meaning] is None and meaning != "test"]
-    if missing:
-        raise input_error(f"{label}: no column {', '.join(missing)}; there are {', '.join(map(str, found.values())) or 'none'}")
-    force, shift, pressing = (
-        _numbers(table[columns[name]], f"{label}: column {columns[name]}") for name in ("tangential_force", "shift", "normal_force")
-    )
-    if columns["test"] is None:
-        return [Loop(force, shift, pressing, name=label, **options)]  # type: ignore[arg-type]  # it takes the mean
-    tests = np.asarray(table[columns["test"]])
+    optional = ["test", *(["normal_force"] if options.get("normal_force") is not None else [])]
+    return _loops(tables.columns_of(table, label, _names_of(options.get("columns")), optional), name=label, **options)
+
+
+def _names_of(given: Mapping[str, str | int] | None) -> dict[str, Sequence[str] | int]:
+    """Names of the columns of loops in lower case by their meaning. Raises InputError."""
+    _check_meanings("columns", given)
+    names: dict[str, Sequence[str] | int] = dict(_COLUMNS)
+    for meaning, name in (given or {}).items():
+        names[meaning] = name if isinstance(name, int) else (name.strip().lower(),)
+    return names
+
+
+def _check_meanings(option: str, given: Mapping[str, Any] | None) -> None:
+    """Raises InputError for an option that is not a mapping of columns by their meaning."""
+    for meaning in given or {}:
+        if meaning not in _COLUMNS:
+            raise input_error(f"{option}: '{meaning}' is not one of {', '.join(_COLUMNS)}")
+
+
+def _loops(
+    found: Mapping[str, tables.Column],
+    *,
+    name: str,
+    columns: Mapping[str, str | int] | None = None,  # of `found`
+    normal_force: float | None = None,
+    units: Mapping[str, str] | None = None,
+    length_unit: str = "mm",
+    force_unit: str = "N",
+    thickness: float | None = None,
+    sign: Mapping[str, float] | None = None,
+    **options: Any,
+) -> list[Loop]:
+    """The loops in columns by their meaning; options as in `loops_of`. Raises InputError."""
+    for option, given in (("units", units), ("sign", sign)):
+        _check_meanings(option, given)
+    values = {}
+    for meaning in ("tangential_force", "shift", "normal_force"):
+        if meaning == "normal_force" and normal_force is not None:
+            continue
+        column = found[meaning]
+        unit = (units or {}).get(meaning, column.unit)
+        if meaning == "shift":
+            scale = tables.factor(unit, length_unit) if unit else 1.0
+        else:
+            scale = _force_scale(column.label, unit or (force_unit if thickness else ""), length_unit, force_unit, thickness)
+        values[meaning] = (sign or {}).get(meaning, 1.0) * scale * column.numbers()
+    force, shift = values["tangential_force"], values["shift"]
+    pressing = np.full(force.size, normal_force) if normal_force is not None else values["normal_force"]
+    if "test" not in found:
+        return [Loop(force, shift, pressing, name=name, **options)]  # type: ignore[arg-type]  # it takes the mean
+    tests = np.asarray(found["test"].values)
     if "" in tests.tolist():
-        raise input_error(f"{label}: column {columns['test']} has empty cells; give every row the name of its test")
+        raise input_error(f"{found['test'].label} has empty cells; give every row the name of its test")
     return [
-        Loop(force[tests == test], shift[tests == test], pressing[tests == test], name=f"{label}: {test}", **options)
+        Loop(force[tests == test], shift[tests == test], pressing[tests == test], name=f"{name}: {test}", **options)
         for test in dict.fromkeys(tests.tolist())
     ]
 
 
-def _numbers(values: Any, column: str) -> Array:
-    """The numbers of a column; NaN for an empty cell. Raises InputError."""
-    numbers = []
-    for value in np.atleast_1d(np.asarray(values)).tolist():
-        try:
-            numbers.append(math.nan if value is None or value == "" else float(value))
-        except (TypeError, ValueError):
-            raise input_error(f"{column}: {value!r} is not a number") from None
-    return np.array(numbers)
+def _force_scale(label: str, unit: str, length_unit: str, force_unit: str, thickness: float | None) -> float:
+    """Forces per thickness of the scene per unit of a column. Raises InputError."""
+    if not unit:
+        return 1.0
+    if tables.is_force(unit):
+        if not thickness:
+            raise input_error(
+                f"{label}: is a force in {unit}, where the scene has forces per thickness; give the thickness in {length_unit}, "
+                f"or the unit of the column if it is another, such as units={{'tangential_force': '{force_unit}/{length_unit}'}}"
+            )
+        return tables.factor(unit, force_unit) / thickness
+    return tables.factor(unit, f"{force_unit}/{length_unit}")
 
 
 @dataclass(repr=False)
@@ -327,15 +372,16 @@ def fit(
     problem = _Problem(scene, [loop._with_noise() for loop in _listed(loops)], free, rig_stiffness)
     problem.noise_is_given = all(None not in (loop.force_noise, loop.shift_noise) for loop in _listed(loops))
     start = problem.start()
+    suspicions = [sentence for loop in problem.loops for sentence in _suspicions(problem, loop)]
     if not problem.reaches(start):
-        raise input_error(_ended_early(problem))
+        raise input_error("; ".join([_ended_early(problem), *suspicions]))
     found = optimize.least_squares(problem.residuals, start, jac=problem.jacobian, x_scale="jac", xtol=1e-6, ftol=1e-9, max_nfev=60)
     residuals = problem.residuals(found.x)
     freedom = residuals.size - found.x.size
     reduced = float(residuals @ residuals) / max(freedom, 1)
     estimate = problem.estimate(found.x, found.jac, 1.0 if problem.noise_is_given else reduced)
     rows = [problem.distances(found.x, number) for number in range(len(problem.loops))]
-    warnings = estimate.warnings + _doubts(found, residuals.size, freedom, reduced, rows, problem)
+    warnings = suspicions + estimate.warnings + _doubts(found, residuals.size, freedom, reduced, rows, problem)
     curves = [problem.curves(found.x, number) or [] for number in range(len(problem.loops))]
     fitted = dataclasses.replace(estimate, warnings=warnings)
     return Fit(
@@ -838,6 +884,30 @@ def _doubts(found: Any, rows: int, freedom: int, reduced: float, residuals: list
                 f"{loop.name}: residuals of successive rows are correlated ({correlation:.2f}); standard errors are too small"
             )
     return sentences
+
+
+def _suspicions(problem: _Problem, loop: Loop) -> list[str]:
+    """Sentences about wrong units, signs or columns of a loop, by comparison with the contact at the start values."""
+    values = problem.start_values
+    rig = float(values[problem.names.index(RIG_STIFFNESS)]) if RIG_STIFFNESS in problem.names else problem.rig_stiffness
+    of_contact = math.nan
+    try:
+        with problem._scene_for(values, loop).contact() as contact:
+            contact.run()
+            before = contact.loads.shift
+            force = 1e-3 * float(np.max(np.abs(loop.tangential_force)) or loop.normal_force)
+            force = min(force, 1e-3 * loop.normal_force)
+            if contact.advance(tangential_force=force) == "complete":
+                of_contact = force / (contact.loads.shift - before)
+    except MfvError:
+        pass  # the fit reports it
+    noise = (loop.force_noise or 0.0, loop.shift_noise or 0.0)
+    driven = loop._driven
+    turns = _reversals(driven, max(8.0 * _estimated_noise(driven), 0.05 * float(np.ptp(driven))))
+    with_rig = 1.0 / (1.0 / of_contact + 1.0 / rig)
+    return doubts_about(
+        loop.name, loop.tangential_force, loop.shift, float(loop.normal_force), turns, noise, (of_contact, with_rig)
+    )
 
 
 def _start(name: str, axis: Axis) -> float:

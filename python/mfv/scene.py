@@ -11,6 +11,7 @@ import dataclasses
 import numbers
 import os
 import sys
+import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from ctypes import byref, c_void_p
 from pathlib import Path
@@ -19,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Callable, ClassVar, Literal, TypedDict, T
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _html, errors
+from . import _html, errors, profiles, tables
 from ._library import LARGEST_INTEGER, library, real_pointer, text_buffer, text_for, text_of, whole_text
 from ._suggestions import suggestion
 from .inputs import groups
@@ -143,8 +144,12 @@ class OfProfile(Elastic, total=False):
     interpolation: Literal["linear", "monotone_cubic"] | None
     position_scale: float | None
     height_scale: float | None
-    level: Literal["none", "mean", "line"] | None
+    level: Literal["none", "mean", "line", "parabola"] | None
     centred: bool | None
+
+
+class OfMeasuredProfile(OfProfile, profiles.Reading, total=False):
+    """Those of a profile in a file, too."""
 
 
 @_keywords_only
@@ -170,7 +175,7 @@ class Body(KeyGroup):
     interpolation: Literal["linear", "monotone_cubic"] | None = None
     position_scale: float | None = None
     height_scale: float | None = None
-    level: Literal["none", "mean", "line"] | None = None
+    level: Literal["none", "mean", "line", "parabola"] | None = None
     centred: bool | None = None
     data: Data | None = None
 
@@ -212,12 +217,25 @@ class Body(KeyGroup):
         return cls(shape="power", coefficient=coefficient, exponent=exponent, **elastic)
 
     @classmethod
-    def profile(cls, x: ArrayLike, height: ArrayLike, **others: Unpack[OfProfile]) -> Body:
-        """A nearly flat surface through points: positions `x`, increasing, and how far it recedes from the other body [length].
+    def profile(
+        cls, x: ArrayLike | str | os.PathLike[str], height: ArrayLike | None = None, **others: Unpack[OfMeasuredProfile]
+    ) -> Body:
+        """A nearly flat surface through points: positions `x`, increasing, and how far it recedes from the other body [length]; points
+        whose height is NaN are omitted. A negative `height_scale` is for heights that are positive outwards.
 
-        A negative `height_scale` is for heights that are positive outwards, such as those of a stylus.
+        Or the profile in a file, a text or that of an instrument: `Body.profile("scan.opd", unit="mm")`, with the options of
+        `mfv.profiles.read`; heights are positive outwards then. Its notes are warnings of Python. Raises OSError, InputError,
+        ModuleNotFoundError.
         """
-        return cls(shape="profile", data={"x": _numbers(x, "x"), "height": _numbers(height, "height")}, **others)
+        keys: dict[str, Any] = dict(others)
+        if not isinstance(x, (str, os.PathLike)):
+            if height is None:
+                raise TypeError("Body.profile needs x and height, or the name of a file")
+            return cls(shape="profile", data={"x": _numbers(x, "x"), "height": _numbers(height, "height")}, **keys)
+        if height is not None:
+            raise TypeError("Body.profile takes the name of a file, or x and height, not both")
+        options = {name: keys.pop(name) for name in profiles.Reading.__annotations__ if name in keys}
+        return cls(shape="profile", data=_measured(x, **options), **keys)
 
     @classmethod
     def matrix(
@@ -500,6 +518,17 @@ class Scene(KeyGroup):
         parts += [(name, getattr(self, name)) for name in _SINGLE if getattr(self, name) is not None]
         return parts + [(f"step({number})", step) for number, step in enumerate(self.steps, start=1)]
 
+    def _data_of_instrument(self, body: Body) -> Data | None:
+        """The points of a profile whose file is not a text, in `length_unit`; None for others. Raises InputError."""
+        if body.shape != "profile" or body.file is None:
+            return None
+        path = os.path.join(os.path.dirname(os.fspath(self.name)), os.fspath(body.file))
+        if not os.path.isfile(path) or tables.is_text(path):
+            return None
+        if not body.position_scale == body.height_scale is None:
+            raise errors.input_error(f"{path}: has units; remove position_scale and height_scale")
+        return _measured(path, unit=self.length_unit or "mm")
+
     def _check_parts(self) -> None:
         """Raises TypeError for an attribute of the wrong class."""
         for name in ("lower", "upper"):
@@ -518,6 +547,8 @@ class Scene(KeyGroup):
             statuses = _set_keys(handle, "scene", self.keys())
             for group, part in self._parts():
                 keys, data = part.keys(), getattr(part, "data", None)
+                if isinstance(part, Body) and data is None:
+                    data = self._data_of_instrument(part)
                 if data is not None:
                     file = keys.setdefault("file" if isinstance(part, Body) else "mu_file", _NAMES_OF_DATA[group])
                     statuses += [_set_data(handle, file, dataset, values) for dataset, values in data.items()]
@@ -566,6 +597,14 @@ def _numbers(values: ArrayLike, name: str = "an array") -> NDArray[np.float64]:
     if np.ma.is_masked(values):
         raise TypeError(f"{name}: must be an array without masked values")
     return np.ascontiguousarray(values, dtype=np.float64)
+
+
+def _measured(path: str | os.PathLike[str], **options: Any) -> Data:
+    """The points of the profile in a file, see `mfv.profiles.read`; its notes are warnings of Python."""
+    profile = profiles.read(path, **options)
+    for note in profile.notes:
+        warnings.warn(note, stacklevel=3)
+    return {"x": np.ascontiguousarray(profile.x), "height": np.ascontiguousarray(profile.height)}
 
 
 def _coefficients(x: ArrayLike | None, **coefficients: Coefficient) -> dict[str, Any]:

@@ -52,6 +52,8 @@ module mfv_body
       real(wp), allocatable :: position(:), height(:)
       !> Profile: one of interpolation_...
       integer :: interpolation = interpolation_unset
+      !> Profile: points of the measurement without a value, which are not in it.
+      integer :: dropouts = 0
       !> Matrix: surface length of each node, and displacements by nodal forces.
       real(wp), allocatable :: width(:), matrix(:, :)
    contains

@@ -1,5 +1,6 @@
 !> Profiles from measured points: scaled, centred and levelled.
 module mfv_profile
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use mfv_body, only: body_type, interpolation_unset, new_profile
    use mfv_error, only: error_type, set_error
    use mfv_kinds, only: wp
@@ -8,10 +9,10 @@ module mfv_profile
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: trace_type, profile_of_points, level_none, level_mean, level_line
+   public :: trace_type, profile_of_points, level_none, level_mean, level_line, level_parabola
 
-   !> Levelling of heights, in the order of the key &body level: none, by their mean, or by the least-squares line.
-   integer, parameter :: level_none = 1, level_mean = 2, level_line = 3
+   !> Levelling of heights, in the order of the key &body level: none, by their mean, or by the least-squares line or parabola.
+   integer, parameter :: level_none = 1, level_mean = 2, level_line = 3, level_parabola = 4
 
    !> Settings that turn measured points into a profile.
    type :: trace_type
@@ -21,6 +22,8 @@ module mfv_profile
       integer :: level = level_none, interpolation = interpolation_unset
       !> Whether the middle of the positions is moved to x = 0.
       logical :: centred = .false.
+      !> Whether position_scale is given, the distance of heights without positions.
+      logical :: has_spacing = .false.
    end type trace_type
 
    !> Minimum for Steffen's interpolation.
@@ -28,48 +31,59 @@ module mfv_profile
 
 contains
 
-   !> The profile through measured points: increasing positions and the recess there; shape (points). Error MFV_INPUT_ERROR
-   !> for fewer than 3 points, and for scales with which numbers are too large or points coincide.
+   !> The profile through measured points: increasing positions and the recess there; shape (points). Points without a value (NaN)
+   !> are omitted and counted. Error MFV_INPUT_ERROR for fewer than 3 others, and for scales with which numbers are too large or
+   !> points coincide.
    subroutine profile_of_points(positions, heights, trace, body, error)
       real(wp), intent(in) :: positions(:), heights(:)
       type(trace_type), intent(in) :: trace
       type(body_type), intent(out) :: body
       type(error_type), allocatable, intent(out) :: error
       real(wp), allocatable :: x(:), height(:)
+      logical :: given(size(positions))
       integer :: n
 
-      n = size(positions)
+      given = .not. (ieee_is_nan(positions) .or. ieee_is_nan(heights))
+      n = count(given)
       if (n < fewest_points) then
-         call set_error(error, MFV_INPUT_ERROR, 'needs at least '//to_text(fewest_points)//' points; it has '//to_text(n))
+         call set_error(error, MFV_INPUT_ERROR, 'needs at least '//to_text(fewest_points)//' points; it has '//to_text(n)// &
+                        trim(merge(' with values', '            ', n < size(given))))
          return
       end if
-      if (any(abs(positions) > largest_size/max(trace%position_scale, 1.0_wp)) .or. &
-          any(abs(heights) > largest_size/max(abs(trace%height_scale), 1.0_wp))) then
+      x = pack(positions, given)
+      height = pack(heights, given)
+      if (any(abs(x) > largest_size/max(trace%position_scale, 1.0_wp)) .or. &
+          any(abs(height) > largest_size/max(abs(trace%height_scale), 1.0_wp))) then
          call set_error(error, MFV_INPUT_ERROR, 'with position_scale and height_scale, '//reasonable_sizes)
          return
       end if
-      x = trace%position_scale*positions
-      height = trace%height_scale*heights
+      x = trace%position_scale*x
+      height = trace%height_scale*height
       if (trace%centred) x = x - 0.5_wp*(x(1) + x(n))
       if (trace%level == level_mean) height = height - sum(height)/n
-      if (trace%level == level_line) call remove_line(x, height)
+      if (trace%level >= level_line) call remove_polynomial(trace%level - level_mean, x, height)
       if (all(x(2:) > x(:n - 1))) then
          body = new_profile(x, height, trace%interpolation)
+         body%dropouts = size(given) - n
       else
          call set_error(error, MFV_INPUT_ERROR, 'with position_scale and centred, points coincide')
       end if
    end subroutine profile_of_points
 
-   !> Subtract the least-squares line from heights.
-   pure subroutine remove_line(x, height)
+   !> Subtract the least-squares line (degree 1) or parabola (2) from heights.
+   pure subroutine remove_polynomial(degree, x, height)
+      integer, intent(in) :: degree
       real(wp), intent(in) :: x(:)
       real(wp), intent(inout) :: height(:)
-      real(wp) :: from_middle(size(x)), scale
+      real(wp) :: line(size(x)), parabola(size(x)), scale
 
       scale = maxval(abs(x))
-      from_middle = x/scale - sum(x/scale)/size(x)
+      line = x/scale - sum(x/scale)/size(x)
+      parabola = line**2 - sum(line**2)/size(x)
+      parabola = parabola - sum(line*parabola)/sum(line**2)*line
       height = height - sum(height)/size(x)
-      height = height - sum(from_middle*height)/sum(from_middle**2)*from_middle
-   end subroutine remove_line
+      height = height - sum(line*height)/sum(line**2)*line
+      if (degree > 1) height = height - sum(parabola*height)/sum(parabola**2)*parabola
+   end subroutine remove_polynomial
 
 end module mfv_profile

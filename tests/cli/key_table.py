@@ -264,7 +264,7 @@ CASE: dict[tuple[str, str], Row] = {
     ("body", "height_scale"): real(
         "body(2)", "profile", "1", refused=dict.fromkeys(("0", "0.0", "-0.0", "1e-400"), "must not be 0")
     ),
-    ("body", "level"): choice("body(2)", "profile", "'none'", "none mean line"),
+    ("body", "level"): choice("body(2)", "profile", "'none'", "none mean line parabola"),
     ("body", "centred"): logical("body(2)", "profile", ".false."),
     ("mesh", "nodes"): whole(
         "mesh", "cylinder", "11", 1, 100000000, refused={"100000000": "can be more than 1000000 only with half_angle=180"}

@@ -7,10 +7,11 @@ module fuzz_readers
    use mfv_kinds, only: wp
    use mfv_matrix_file, only: read_matrix_body
    use mfv_profile, only: trace_type
-   use mfv_profile_file, only: read_profile, read_table
+   use mfv_profile_file, only: read_profile
    use mfv_status, only: MFV_COMPLETE
    use mfv_stress_file, only: add_stresses, stress_request_type, stress_result_type
-   use mfv_strings, only: copy_to_c, from_c
+   use mfv_strings, only: copy_to_c, from_c, string_type
+   use mfv_table_file, only: read_named_table, read_table
    implicit none
    private
 
@@ -52,7 +53,7 @@ contains
       call tell(error, message, size, fuzz_stress)
    end function fuzz_stress
 
-   !> A text with columns of numbers: a profile, and coefficients of friction.
+   !> A text with columns of numbers: coefficients of friction, a load history, a profile.
    integer(c_int) function fuzz_columns(path, message, size) bind(C)
       character(kind=c_char), intent(in) :: path(*)
       character(kind=c_char), intent(inout) :: message(*)
@@ -60,7 +61,9 @@ contains
       type(body_type) :: body
       type(error_type), allocatable :: error
       real(wp), allocatable :: table(:, :)
+      type(string_type), allocatable :: names(:)
 
+      call read_named_table(from_c(path), names, table, error)
       call read_table(from_c(path), 'x, mu_static and mu_kinetic', 3, .true., table, error)
       call read_profile(from_c(path), trace_type(), body, error)
       call tell(error, message, size, fuzz_columns)

@@ -64,7 +64,12 @@ VARIANTS = {
         "&step rotation=1e-4 /\n&output error_estimate=.true., states='steps' /",
     ],
 }
-COLUMNS = "# x and height\n-1 0.5\n-0.01 0.1\n0 0\n0.01, 0.1\n1 0.5\n", "-1 0.7 0.5\n0 0.6 0.5\n1\t0.7 0.4\n"
+COLUMNS = (
+    "# x and height\n-1 0.5\n-0.01 0.1\n0 0\n0.01, 0.1\n1 0.5\n",
+    "-1 0.7 0.5\n0 0.6 0.5\n1\t0.7 0.4\n",
+    'Trace,A\r\r\n"x [um]";z;\r\r\n4\r\r\n1;-0,5;"0,5";\r\r\n2;0;nan;\r\r\n3;0,5;;\r\r\n4;1;0,25;\r\r\n',
+    "\0".join("tangential_force\ttime\n1e-4\t0\n-1e-4\t1\n") + "\0",
+)
 
 #: Values of every kind and none: extreme numbers, texts of all sorts, what looks like a number to Fortran alone.
 VALUES = [

@@ -462,7 +462,7 @@ def test_a_misspelled_command_has_a_proposal(capsys: pytest.CaptureFixture[str])
         assert caught.value.code == 2 and f"unknown command '{word}'; {proposal}" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("command", ["new", "plot", "info", "compare", "animate", "report", "study", "identify", "fatigue"])
+@pytest.mark.parametrize("command", ["new", "plot", "info", "compare", "animate", "report", "study", "identify", "profile", "fatigue"])
 def test_every_command_teaches(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as caught:
         main([command, "--help"])
@@ -497,7 +497,7 @@ def test_new_takes_the_name_of_a_file(tmp_path: Path, monkeypatch: pytest.Monkey
 @pytest.mark.parametrize(
     ("line", "expected"),
     [
-        ("mfv ", {"new", "plot", "info", "compare", "animate", "report", "study", "identify", "fatigue"}),
+        ("mfv ", {"new", "plot", "info", "compare", "animate", "report", "study", "identify", "profile", "fatigue"}),
         ("mfv an", {"animate"}),
         ("mfv plot --st", {"--step", "--stress"}),
         ("mfv new two", {"two_cylinders"}),

@@ -237,14 +237,15 @@ def test_tables_and_files(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "content, message",
     [
-        (b"Q,U,P\n1,1,100\n2,2,\n3,3,100\n4,4,100\n5,5,100\n", "the columns must be finite numbers; remove the rows with gaps"),
-        (b"Q,U,P\n1,1,100\n,2,100\n3,3,100\n4,4,100\n5,5,100\n", "the columns must be finite numbers; remove the rows with gaps"),
-        (b"Q,U,P\n1,1,100\n2,far,100\n", "column U: 'far' is not a number"),
-        (b"Q,U,P,test\n1,1,100,a\n2,2,100,\n", "column test has empty cells"),
-        (b"Q,U,P\n1,1\n", "not a table: its rows have different numbers"),
-        (b"Q,U,P\n", "no rows; needs a line with the names of the columns"),
-        (b"", "no rows; needs a line with the names of the columns"),
-        (b"Q,U,P\n1,1,\xb5\n", "not a text file in UTF-8"),
+        (b"Q,U,P\n1,1,100\n2,2,\n3,3,100\n4,4,100\n5,5,100\n", " the columns must be finite numbers; remove the rows with gaps"),
+        (b"Q,U,P\n1,1,100\n,2,100\n3,3,100\n4,4,100\n5,5,100\n", " the columns must be finite numbers; remove the rows with gaps"),
+        (b"Q,U,P\n1,1,100\n2,far,100\n", "3:3: column U: 'far' is not a number"),
+        (b"Q,U,P,test\n1,1,100,a\n2,2,100,\n", " column test has empty cells"),
+        (b"Q,U,P\n1,1\n", "2: must have 3 cells, as many as the names of the columns, not '1,1'"),
+        (b"Q,U,P\n", " no rows; needs a line with the names of the columns"),
+        (b"", " no rows; needs a line with the names of the columns"),
+        (b"Q,U,P\n1,1,\xb5\n", "2:5: column P: '\xb5' is not a number"),
+        (b"Q,U,P\n1,1,\0\n", "2:5: not a text file: control character 0"),
     ],
 )
 def test_messages_about_a_table_name_its_file(
@@ -253,10 +254,10 @@ def test_messages_about_a_table_name_its_file(
     case, loops = tmp_path / "rig.nml", tmp_path / "loops.csv"
     case.write_text(cylinders().text())
     loops.write_bytes(content)
-    with pytest.raises(errors.InputError, match=re.escape(f"{loops}: {message}")):
+    with pytest.raises(errors.InputError, match=re.escape(f"{loops}:{message}")):
         identify.read(loops)
     assert main(["identify", str(case), str(loops), "--free", "friction%mu=0.5"]) == 2
-    assert capsys.readouterr().err.startswith(f"mfv: {loops}: {message}")
+    assert capsys.readouterr().err.startswith(f"mfv: {loops}:{message}")
 
 
 def test_integers_in_a_table(tmp_path: Path) -> None:
@@ -277,7 +278,9 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert value == pytest.approx(MU, rel=0.02) and picture.read_bytes()[1:4] == b"PNG"
     for arguments, complaint in (
         ([str(case), str(loops), *start[:2], "--shift", "big"], "no test 'big'; there are small, large"),
-        ([str(case), str(case), *start[:2]], f"{case}: not a table"),
+        ([str(case), str(loops), *start[:2], "--column", "shift=dU"], "no column du; there are test, U, Q, P"),
+        ([str(case), str(loops), *start[:2], "--unit", "shift=N"], "a value in N is a force and cannot be in mm"),
+        ([str(case), str(case), *start[:2]], f"{case}: no column Q, U, P; there are &scene"),
     ):
         assert main(["identify", *arguments]) == 2
         assert complaint in capsys.readouterr().err

@@ -12,13 +12,13 @@ from .. import __version__
 from .._packages import how_to_install
 from .._suggestions import suggestion
 from ..errors import MfvError
-from . import animate, compare, fatigue, identify, info, new, plot, report, study
+from . import animate, compare, fatigue, identify, info, new, plot, profile, report, study
 from .completion import complete
 
 UNUSABLE = 2  # exit code for unusable input, the same as that of mfv_run
 INTERRUPTED = 130  # exit code after Ctrl-C, the same as that of mfv_run
 
-COMMANDS = (new, plot, info, compare, animate, report, study, identify, fatigue)
+COMMANDS = (new, plot, info, compare, animate, report, study, identify, profile, fatigue)
 
 EXAMPLES = """\
 examples:
@@ -33,6 +33,8 @@ examples:
                                             solve many cases, write one table
   python -m mfv identify rig.nml loops.csv --free friction%mu=0.6
                                             parameters from measured loops
+  python -m mfv profile scan.x3p -o scan.txt
+                                            a measured profile as a text for &body
   python -m mfv fatigue tests.csv           fatigue tests and predicted lives
 
 'python -m mfv COMMAND --help' explains each command.

@@ -14,9 +14,10 @@ NAME, HELP = "identify", "estimate parameters of a case from measured loops"
 
 DESCRIPTION = """\
 Estimate parameters of a case from measured loops of tangential force over shift: values, standard errors, intervals,
-correlations, warnings, and a picture of loops and residuals. The loops are comma-separated columns Q, U and P, and test
-if there are several, under a line with their names. Parameters are keys of the case, and rig_stiffness. Needs scipy.
-See docs/identify.md.
+correlations, warnings, and a picture of loops and residuals. The loops are the columns Q, U and P of a text file, and
+test if there are several, under a line with their names; units in the names are converted to those of &scene (mm and N
+without length_unit and force_unit). Parameters are keys of the case, and rig_stiffness. Needs scipy. See
+docs/identify.md.
 """
 
 EXAMPLES = """\
@@ -25,6 +26,8 @@ examples:
                                             print the estimate, draw loops.png
   python -m mfv identify rig.nml loops.csv --free friction%mu=0.6 --shift large
                                             the machine prescribes the shift in test 'large'
+  python -m mfv identify rig.nml daq.txt --free friction%mu=0.6 --column shift=LVDT --unit shift=um --thickness 8
+                                            columns of other names and units; forces, not forces per thickness
 """
 
 
@@ -37,6 +40,14 @@ def _free(text: str) -> tuple[str, float]:
         raise argparse.ArgumentTypeError(f"must be KEY=START such as friction%mu=0.6, not '{text}'") from None
 
 
+def _pair(text: str) -> tuple[str, str]:
+    """The meaning of a column and what is said of it. Raises ArgumentTypeError."""
+    meaning, _, value = text.partition("=")
+    if not value.strip():
+        raise argparse.ArgumentTypeError(f"must be COLUMN=VALUE such as shift=um, not '{text}'")
+    return meaning.strip(), value.strip()
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     complete_files(parser.add_argument("file", type=Path, metavar="CASE.nml", help="case; its steps are not used"), "nml")
@@ -47,6 +58,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--shift", action="append", default=[], metavar="TEST", help="test in which the shift is prescribed; repeat it"
     )
+    columns = "tangential_force, shift, normal_force, test"
+    parser.add_argument(
+        "--column", type=_pair, action="append", default=[], metavar="C=NAME", help=f"name of a column in the file; C: {columns}"
+    )
+    parser.add_argument("--unit", type=_pair, action="append", default=[], metavar="C=UNIT", help="unit of a column in the file")
+    parser.add_argument("--reverse", action="append", default=[], metavar="C", help="change the sign of a column")
+    parser.add_argument("--thickness", type=float, metavar="LENGTH", help="divides columns that are forces")
     add_output(parser, "PICTURE", "png, pdf, svg or eps (default: LOOPS.png beside the loops)")
 
 
@@ -54,7 +72,16 @@ def run(options: argparse.Namespace) -> None:
     """Fit, print, draw. Raises OSError, InputError, ValueError, ModuleNotFoundError."""
     from ..identify import fit, read
 
-    scene, loops = Scene.from_file(options.file), read(options.other)
+    scene = Scene.from_file(options.file)
+    loops = read(
+        options.other,
+        columns=dict(options.column),
+        units=dict(options.unit),
+        sign=dict.fromkeys(options.reverse, -1.0),
+        thickness=options.thickness,
+        length_unit=scene.length_unit or "mm",
+        force_unit=scene.force_unit or "N",
+    )
     tests = {loop.name.rpartition(": ")[2]: loop for loop in loops}
     for test in options.shift:
         if test not in tests:

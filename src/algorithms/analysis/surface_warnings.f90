@@ -32,6 +32,7 @@ contains
       if (.not. any(contact)) return
       call check_end
       if (body%shape == shape_profile) call check_interpolation
+      if (body%dropouts > 0) call warn_of_dropouts
       if (.not. any(body%shape == [shape_power, shape_wedge]) .or. body%exponent > 1.0_wp) return
       angle = atan(body%coefficient)*180.0_wp/pi
       if (angle > largest_angle) call add_text(warnings, 'the flanks of the '//name//' body rise by '//to_text(angle, 3)// &
@@ -39,6 +40,17 @@ contains
                                                to_text(largest_angle, 2)//' degrees')
 
    contains
+
+      !> Points of a measurement without a value are not in its profile.
+      subroutine warn_of_dropouts()
+         integer :: n
+
+         n = size(body%position)
+         call add_text(warnings, to_text(body%dropouts)//' of '//to_text(n + body%dropouts)//' points of the profile of the '// &
+                       name//' body have no value and are omitted; its points are now up to '// &
+                       to_text(maxval(body%position(2:) - body%position(:n - 1)), 3)//' apart: check that what is missing '// &
+                       'does not touch')
+      end subroutine warn_of_dropouts
 
       !> A contact cannot grow beyond the end of a surface. A flat punch has corners by design; an interval should end there.
       subroutine check_end()

@@ -200,6 +200,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       trace%position_scale = reader%real_value('body', number, 'position_scale')
+      trace%has_spacing = reader%has('body', number, 'position_scale')
       trace%height_scale = reader%real_value('body', number, 'height_scale')
       trace%centred = reader%logical_value('body', number, 'centred')
       trace%level = reader%choice('body', number, 'level')

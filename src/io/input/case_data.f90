@@ -1,6 +1,6 @@
 !> Data in memory instead of the files that a case names: datasets under the name of each file.
 module mfv_case_data
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan
    use mfv_body, only: body_type
    use mfv_error, only: error_type, set_error
    use mfv_kinds, only: wp
@@ -79,15 +79,20 @@ contains
       end do
    end function place_of
 
-   !> A dataset of one column and `count` rows (any number if negative). Error MFV_INPUT_ERROR.
-   subroutine read_vector(self, file, name, count, values, error)
+   !> A dataset of one column and `count` rows (any number if negative). `with_gaps`: whether NaN is permitted.
+   !> Error MFV_INPUT_ERROR.
+   subroutine read_vector(self, file, name, count, values, error, with_gaps)
       class(case_data_type), intent(in) :: self
       character(*), intent(in) :: file, name
       integer, intent(in) :: count
       real(wp), allocatable, intent(out) :: values(:)
       type(error_type), allocatable, intent(out) :: error
+      logical, intent(in), optional :: with_gaps
+      logical :: may_be_nan
       integer :: place
 
+      may_be_nan = .false.
+      if (present(with_gaps)) may_be_nan = with_gaps
       place = self%place_of(file, name)
       if (place == 0) then
          call set_error(error, MFV_INPUT_ERROR, 'dataset '//name//' is missing')
@@ -96,7 +101,7 @@ contains
       associate (found => self%datasets(place)%values)
          if (size(found, 2) /= 1 .or. (count >= 0 .and. size(found, 1) /= count)) then
             call set_error(error, MFV_INPUT_ERROR, name//' must have one column and as many rows as x')
-         else if (.not. all(ieee_is_finite(found))) then
+         else if (.not. all(ieee_is_finite(found) .or. (may_be_nan .and. ieee_is_nan(found)))) then
             call set_error(error, MFV_INPUT_ERROR, name//' has values that are not finite')
          else
             values = found(:, 1)
@@ -105,12 +110,13 @@ contains
    end subroutine read_vector
 
    !> The datasets with these names, separated by blanks, as columns; the first must increase. `table`: shape (columns, rows), as
-   !> that of a text file. Error MFV_INPUT_ERROR.
-   subroutine read_columns(self, file, names, table, error)
+   !> that of a text file. `with_gaps`: whether those after the first may have NaN. Error MFV_INPUT_ERROR.
+   subroutine read_columns(self, file, names, table, error, with_gaps)
       class(case_data_type), intent(in) :: self
       character(*), intent(in) :: file, names
       real(wp), allocatable, intent(out) :: table(:, :)
       type(error_type), allocatable, intent(out) :: error
+      logical, intent(in), optional :: with_gaps
       type(string_type), allocatable :: list(:)
       real(wp), allocatable :: column(:)
       integer :: i, rows
@@ -118,7 +124,11 @@ contains
       list = list_of_words(names)
       rows = -1
       do i = 1, size(list)
-         call self%read_vector(file, list(i)%text, rows, column, error)
+         if (i == 1) then
+            call self%read_vector(file, list(i)%text, rows, column, error)
+         else
+            call self%read_vector(file, list(i)%text, rows, column, error, with_gaps)
+         end if
          if (allocated(error)) exit
          if (rows < 0) then
             rows = size(column)

@@ -84,16 +84,17 @@ contains
       call keys%add('body', 'harmonics', kind_integer, "kernel='fourier': terms of the series; if omitted: 4 per "// &
                     "interval of the whole circle; at least half the number of these intervals", default='', lower=2.0_wp, &
                     upper=most_harmonics)
-      call keys%add('body', 'file', kind_text, 'profile: text file with two columns, x and height; matrix: HDF5 file; see '// &
-                    'below; path relative to the case file; needed')
+      call keys%add('body', 'file', kind_text, 'profile: text file with two columns, x and height, or one, heights; matrix: '// &
+                    'HDF5 file; see below; path relative to the case file; needed')
       call keys%add('body', 'interpolation', kind_choice, 'profile: straight lines between its points, with corners, or a '// &
                     'smooth curve without overshoot', default='linear', choices='linear monotone_cubic')
-      call keys%add('body', 'position_scale', kind_real, 'profile: x of the file is multiplied by it', above=0.0_wp, default='1')
+      call keys%add('body', 'position_scale', kind_real, 'profile: x of the file is multiplied by it; with heights only: the '// &
+                    'distance between them, needed', above=0.0_wp, default='1')
       call keys%add('body', 'height_scale', kind_real, 'profile: heights of the file are multiplied by it; a height is the '// &
                     'distance by which the surface recedes from the other body; negative if the file has heights towards '// &
                     'it', default='1')
       call keys%add('body', 'level', kind_choice, 'profile: subtracted from its heights: nothing, their mean, or their '// &
-                    'least-squares line', default='none', choices='none mean line')
+                    'least-squares line or parabola', default='none', choices='none mean line parabola')
       call keys%add('body', 'centred', kind_logical, 'profile: whether the middle of its positions is moved to x = 0', &
                     default='.false.')
    end subroutine add_body_keys

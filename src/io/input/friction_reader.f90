@@ -6,10 +6,10 @@ module mfv_friction_reader
    use mfv_friction_law, only: friction_law_type
    use mfv_key_reader
    use mfv_kinds, only: wp
-   use mfv_profile_file, only: read_table
    use mfv_scene, only: scene_type
    use mfv_wear, only: wear_archard
    use mfv_strings, only: has_word, list_of_words, string_type, to_text
+   use mfv_table_file, only: read_table
    implicit none
    private
    public :: read_friction, read_wear, check_friction_keys, check_coefficients_a_node, check_friction_of_steps

@@ -6,10 +6,10 @@ module mfv_history_reader
    use mfv_kinds, only: wp
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, control_keep, control_force, &
                           control_displacement, controlled_key
-   use mfv_profile_file, only: read_named_table
    use mfv_scene, only: scene_type, step_type
    use mfv_step_reader, only: check_bulk_stress, last_pressing, read_steady_tolerance
    use mfv_strings, only: add_text, has_word, string_type, to_text
+   use mfv_table_file, only: read_named_table
    implicit none
    private
    public :: read_history

@@ -1,0 +1,454 @@
+"""Measured columns in text files, as instruments, spreadsheets and programs write them, with their units.
+
+What a text may look like is the same here and in the library (src/io/input/table_file.f90; docs/guide.md): UTF-8, with or without a
+byte-order mark, or UTF-16; lines that end with LF, CR LF, CR CR LF or CR; between cells a semicolon, a comma, tabs or blanks; decimal
+commas where they cannot be separators; cells in quotation marks; comments (#, !, %, //); lines of text before the numbers.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import MfvError, input_error
+
+Array = NDArray[np.float64]
+
+#: Metres per unit of length.
+LENGTHS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "in": 0.0254, "mil": 2.54e-5}
+#: Newtons per unit of force.
+FORCES = {"N": 1.0, "kN": 1e3, "MN": 1e6, "daN": 10.0, "mN": 1e-3, "uN": 1e-6, "lbf": 4.4482216152605, "kgf": 9.80665}
+_OTHER_NAMES = {"micron": "um", "microns": "um", "inch": "in", "mils": "mil"} | {
+    f"{prefix}met{end}{plural}": unit
+    for prefix, unit in (("", "m"), ("centi", "cm"), ("milli", "mm"), ("micro", "um"), ("nano", "nm"))
+    for end in ("er", "re")
+    for plural in ("", "s")
+}
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?", re.ASCII)
+_WHOLE = re.compile(r"\s*[0-9]+\s*")
+_NO_VALUES = ("", "nan", "na", "n/a", "null", "bad", "-", "--", "---", "*", "***")
+_QUOTED = r"\"[^\"]*\"|'[^']*'"
+#: Lines among which columns and decimal marks are recognised.
+_SAMPLE = 1000
+#: Bytes by which a file is recognised as a text.
+_START = 2**20
+
+
+# --- units ---
+
+
+def unit_of(text: str) -> str:
+    """The unit that a heading ends with, such as 'mm' in 'x [mm]', 'x (mm)', 'x in mm', 'x / mm', 'Lateral mm'; empty for none."""
+    bracket = re.search(r"[\[({]\s*([^\[\](){}]+?)\s*[\])}]\s*$", text)
+    words = [bracket[1]] if bracket else text.split()[-1:]
+    unit = words[0].replace("µ", "u").replace("μ", "u") if words else ""
+    unit = _OTHER_NAMES.get(unit.lower(), unit)
+    force, per, length = unit.partition("/")
+    known = unit in LENGTHS or (force in FORCES and (length in LENGTHS or not per))
+    return unit if known else ""
+
+
+def name_of(text: str) -> str:
+    """A heading without its unit, in lower case."""
+    bare = re.sub(r"[\[({][^\[\](){}]*[\])}]\s*$", "", text).strip()
+    if bare == text.strip() and unit_of(text) and len(text.split()) > 1:
+        bare = re.sub(r"(\s+in|\s*/|\s*,)?\s+\S+$", "", bare)
+    return bare.strip().lower()
+
+
+def factor(unit: str, to: str) -> float:
+    """Units `to` per `unit`. Raises InputError for an unknown unit, and for units of different quantities."""
+    here, there = _size(unit), _size(to)
+    if here[1] != there[1]:
+        raise input_error(f"a value in {unit} is a {here[1]} and cannot be in {to}, which is for a {there[1]}")
+    return here[0] / there[0]
+
+
+def _size(unit: str) -> tuple[float, str]:
+    """A unit in SI units, and its quantity. Raises InputError."""
+    known = unit_of(unit) or unit
+    force, per, length = known.partition("/")
+    if known in LENGTHS:
+        return LENGTHS[known], "length"
+    if known in FORCES:
+        return FORCES[known], "force"
+    if per and force in FORCES and length in LENGTHS:
+        return FORCES[force] / LENGTHS[length], "force per length"
+    raise input_error(
+        f"unknown unit '{unit}'; known are {', '.join(LENGTHS)}; {', '.join(FORCES)}; and forces per length, such as N/mm"
+    )
+
+
+def is_force(unit: str) -> bool:
+    """Whether a unit is one of force, not of force per length."""
+    return _size(unit)[1] == "force"
+
+
+# --- lines ---
+
+
+def check_text(path: str | os.PathLike[str]) -> None:
+    """Raises InputError with line and column if a file does not begin like a text in one of the known encodings; OSError."""
+    with open(path, "rb") as file:
+        _lines_of(file.read(_START), os.fspath(path))
+
+
+def is_text(path: str | os.PathLike[str]) -> bool:
+    """Whether a file begins like a text in one of the known encodings. Raises OSError."""
+    try:
+        check_text(path)
+    except MfvError:
+        return False
+    return True
+
+
+def _lines(path: str | os.PathLike[str]) -> list[str]:
+    """The lines of a text file. Raises OSError; InputError with line and column for a file that is not a text."""
+    with open(path, "rb") as file:
+        return _lines_of(file.read(), os.fspath(path))
+
+
+def _lines_of(data: bytes, name: str) -> list[str]:
+    """The lines of a text. Raises InputError."""
+    zeros, pairs = [byte == 0 for byte in data[:4]], data[: len(data) // 2 * 2]
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        text = pairs.decode("utf-16", "replace")
+    elif zeros in ([False, True, False, True], [True, False, True, False]):
+        text = pairs.decode("utf-16-le" if zeros[1] else "utf-16-be", "replace")
+    else:
+        try:
+            text = data.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            text = data.replace(b"\xe2\x88\x92", b"-").replace(b"\xc2\xa0", b" ").decode("latin-1")
+    text = re.sub("\r*\n|\r+", "\n", text[:-1] if text.endswith("\x1a") else text)
+    text = text.replace("\u2212", "-").replace("\u00a0", " ").replace("\f", " ")
+    control = re.search(r"[\x00-\x08\x0b-\x1f\x7f]", text)
+    if control:
+        line, column = text.count("\n", 0, control.start()) + 1, control.start() - text.rfind("\n", 0, control.start())
+        raise input_error(f"{name}:{line}:{column}: not a text file: control character {ord(control[0])}")
+    return text.split("\n")
+
+
+def _shown(line: str) -> str:
+    """A line for a message."""
+    line = line.strip().replace("\t", " ")
+    return line if len(line) <= 80 else line[:77] + "..."
+
+
+def _is_comment(line: str) -> bool:
+    """Whether a line is blank, has only separators, or is a comment."""
+    return not line.strip(" \t,;") or line.lstrip().startswith(("#", "!", "%", "//"))
+
+
+def _is_heading(line: str) -> bool:
+    """Whether a line before the numbers is text: it has a letter, and its first word does not begin like a number."""
+    first = (re.split(r"[\s,;\"']", line.strip(" \t\"'"), maxsplit=1) or [""])[0].lower()
+    return bool(re.search("[A-Za-z]", line)) and first[:1] not in tuple("0123456789+-.") and first not in ("nan", "inf", "infinity")
+
+
+def _divided(line: str, decimal_comma: bool, by_tabs: bool = False) -> tuple[list[str], int]:
+    """The cells of a line, quotation marks included, and the number of separators at its end."""
+    bare = line.rstrip(" \t,;")
+    spare = len(re.findall("[,;\t]", line[len(bare) :]))
+    outside = re.sub(rf"(?:^|(?<=[\s,;]))({_QUOTED})", "", bare)
+    if ";" in outside:
+        mark = ";"
+    elif by_tabs and "\t" in outside:
+        mark = "\t"
+    elif "," in outside and (not decimal_comma or _is_heading(line) or re.search("[\"']", line)):
+        mark = ","
+    else:
+        return re.findall(rf"{_QUOTED}|\S+", bare), spare
+    return [cell.strip() for cell in re.findall(rf"([ ]*(?:{_QUOTED})?[^{mark}]*){mark}", bare + mark)], spare
+
+
+def _headings(line: str) -> list[str]:
+    """The cells of a heading without quotation marks; a unit in brackets belongs to the word before it."""
+    text = line.lstrip(" \t#!%/") if _is_comment(line) else line.partition("#")[0]
+    if not re.search("[;,\t]", text):
+        cells = re.findall(rf"(?:{_QUOTED}|[^\s\[(]\S*)(?:\s+[\[(][^\])]*[\])])?|\S+", text)
+    else:
+        cells = _divided(text, True, by_tabs=True)[0]
+    return [cell.strip("\"' \t") for cell in cells]
+
+
+def _value(cell: str, decimal_comma: bool) -> float | None:
+    """A number, NaN for a cell without a value, None for anything else. In quotation marks a comma is a decimal mark."""
+    bare = cell
+    if len(cell) > 1 and cell[0] in "\"'" and cell[-1] == cell[0]:
+        bare = cell[1:-1].strip()
+    if "," in bare and "." not in bare and (decimal_comma or bare != cell):
+        bare = bare.replace(",", ".", 1)
+    elif decimal_comma and "." in bare:
+        return None
+    if _NUMBER.fullmatch(bare):
+        value = float(bare.lower().replace("d", "e"))
+        return value if math.isfinite(value) else None
+    return math.nan if bare.lower() in _NO_VALUES else None
+
+
+def _cells(line: str, columns: int, decimal_comma: bool) -> list[str] | None:
+    """The cells of a row with that many; None for a line with fewer or more. Separators at its end stand for cells without a value."""
+    text = line.partition("#")[0]
+    cells, spare = _divided(text, decimal_comma)
+    if len(cells) != columns and "\t" in text:
+        cells, spare = _divided(text, decimal_comma, by_tabs=True)
+    if len(cells) > columns or len(cells) + spare < columns:
+        return None
+    return cells + [""] * (columns - len(cells))
+
+
+def _row(line: str, columns: int, decimal_comma: bool) -> list[float] | None:
+    """The numbers of a row, NaN without a value; None for a line that is not one."""
+    cells = _cells(line, columns, decimal_comma)
+    if cells is None:
+        return None
+    values = [_value(cell, decimal_comma) for cell in cells]
+    if not cells or None in values:
+        return None
+    if columns > 1 and all(value != value for value in values) and "nan" not in line.lower():
+        return None  # dashes alone may be a line of units
+    return values  # type: ignore[return-value]
+
+
+# --- traces: positions and heights ---
+
+
+class Trace(NamedTuple):
+    """Heights, with NaN where there is no value, at increasing positions or, if these are None, at equal distances; units or ''."""
+
+    x: Array | None
+    height: Array
+    x_unit: str
+    height_unit: str
+
+
+def read_trace(path: str | os.PathLike[str]) -> Trace:
+    """The columns x and height, or heights alone, of a text file; a first column of row numbers is dropped.
+
+    Raises OSError, InputError with line and what would be right.
+    """
+    name, lines = os.fspath(path), _lines(path)
+    sample = [line for line in lines[:_SAMPLE] if not _is_comment(line)]
+    choices = [(columns, comma) for columns in (2, 3, 1) for comma in (False, True)]
+    columns, comma = max(choices, key=lambda choice: _longest(_row(line, *choice) is not None for line in sample))
+    rows, numbers, start = _block(name, lines, columns, comma)
+    table = np.array(rows, dtype=float).reshape(-1, columns)
+    if columns == 3:
+        if not _is_numbering(table):
+            raise _no_row(name, numbers[0], lines)
+        table = table[:, 1:]
+    if columns == 1 and _is_count(lines, numbers, table):
+        table = table[1:]
+    fault = _disorder(table[:, 0]) if columns > 1 else None
+    if fault is not None and not comma and all(_row(lines[number - 1], 1, True) for number in numbers):
+        table, fault = np.array([_row(lines[number - 1], 1, True) for number in numbers]), None
+    if fault is not None:
+        raise input_error(f"{name}:{numbers[fault]}: x must increase from line to line, or decrease")
+    headings = [_headings(line) for line in lines[: start - 1] if _is_heading(line) and not _is_comment(line)]
+    units = next((found for cells in reversed(headings) if any(found := [unit_of(cell) for cell in cells[-columns:]])), [])
+    if columns == 3:
+        units = units[-2:]
+    units = [""] * (2 - len(units)) + units
+    if table.shape[1] == 1:
+        return Trace(None, table[:, 0], "", units[-1])
+    x = table[:, 0][np.isfinite(table[:, 0])]
+    if x.size > 1 and x[0] > x[-1]:
+        table = table[::-1]
+    return Trace(table[:, 0].copy(), table[:, 1].copy(), units[0], units[1])
+
+
+def _longest(are_rows: Iterable[bool]) -> int:
+    """The longest run of true values."""
+    best = run = 0
+    for is_row in are_rows:
+        run = run + 1 if is_row else 0
+        best = max(best, run)
+    return best
+
+
+def _no_row(name: str, number: int, lines: Sequence[str]) -> Exception:
+    return input_error(f"{name}:{number}: must be two numbers, x and height, not '{_shown(lines[number - 1])}'")
+
+
+def _block(name: str, lines: Sequence[str], columns: int, comma: bool) -> tuple[list[list[float]], list[int], int]:
+    """The rows of numbers, their lines, and the first of these. Raises InputError for what is neither a row nor text before them."""
+    used = [number for number, line in enumerate(lines, start=1) if not _is_comment(line)]
+    start = next((number for number in used if _row(lines[number - 1], columns, comma)), 0)
+    head = [number for number in used if number < start or not start]
+    last_heading = max((number for number in head if _is_heading(lines[number - 1])), default=0)
+    rest = [number for number in head if number > last_heading or not start]
+    counted = rest[0] if len(rest) == 1 and start and _WHOLE.fullmatch(lines[rest[0] - 1]) else 0
+    if rest and not counted:
+        raise _no_row(name, rest[0], lines)
+    rows, numbers = [], [number for number in used if number >= start > 0]
+    for number in numbers:
+        row = _row(lines[number - 1], columns, comma)
+        if row is None:
+            raise _no_row(name, number, lines)
+        rows.append(row)
+    if counted and abs(int(lines[counted - 1]) - len(rows)) > 1:
+        raise input_error(f"{name}:{counted}: the file has {len(rows)} rows, not {lines[counted - 1].strip()}")
+    return rows, numbers, start or len(lines) + 1
+
+
+def _is_numbering(table: Array) -> bool:
+    """Whether the first column numbers the rows from 0 or 1 and the second increases or decreases."""
+    first, steps = table[:, 0], np.diff(table[:, 1])
+    return bool(
+        first[0] in (0.0, 1.0) and np.all(np.diff(first) == 1.0) and len(steps) > 0 and (np.all(steps > 0.0) or np.all(steps < 0.0))
+    )
+
+
+def _is_count(lines: Sequence[str], numbers: Sequence[int], table: Array) -> bool:
+    """Whether the first of the heights is their number."""
+    are_whole = [bool(_WHOLE.fullmatch(lines[number - 1])) for number in numbers[:2]]
+    return are_whole == [True, False] and bool(abs(table[0, 0] - len(table) + 1) < 1.5)
+
+
+def _disorder(x: Array) -> int | None:
+    """The first row in which positions turn or do not change; None for none."""
+    given = np.flatnonzero(np.isfinite(x))
+    steps = np.diff(x[given])
+    if not len(steps):
+        return None
+    wrong = np.flatnonzero(steps * np.sign(steps[0]) <= 0.0)
+    return int(given[wrong[0] + 1]) if len(wrong) else None
+
+
+# --- columns with names ---
+
+
+@dataclass
+class Column:
+    """A measured column: what it is called in messages, its unit or '', and its values (numbers, or texts of a file)."""
+
+    label: str
+    unit: str
+    values: Any
+    decimal_comma: bool = False
+
+    def numbers(self) -> Array:
+        """The values as numbers; NaN for cells without one. Raises InputError."""
+        found = []
+        for value in np.atleast_1d(np.asarray(self.values)).tolist():
+            number = _value(value, self.decimal_comma) if isinstance(value, str) else math.nan if value is None else value
+            try:
+                found.append(float(number))  # type: ignore[arg-type]  # TypeError for anything else
+            except (TypeError, ValueError):
+                raise input_error(f"{self.label}: {value!r} is not a number") from None
+        return np.array(found)
+
+
+#: Names of a column, or its number from 1.
+Names = Mapping[str, "Sequence[str] | int"]
+
+
+def read_columns(path: str | os.PathLike[str], wanted: Names, optional: Sequence[str] = ()) -> dict[str, Column]:
+    """The columns `wanted` of a text file, by their names in lower case in a heading, which may have units or be followed by a line of
+    units, or by their numbers. Those that are `optional` may be missing; others of the file may have anything.
+
+    Raises OSError, InputError.
+    """
+    name, lines = os.fspath(path), _lines(path)
+    header, names = _header(name, lines, wanted, optional)
+    places = {meaning: place for meaning, keys in wanted.items() if (place := _place(names, keys)) is not None}
+    count = len(names)
+    below = [number for number in range(header + 1, len(lines) + 1) if not _is_comment(lines[number - 1])]
+    needed = [place for meaning, place in places.items() if meaning not in optional]
+
+    def is_row(number: int, comma: bool) -> bool:
+        cells = _cells(lines[number - 1], count, comma)
+        return cells is not None and all(_value(cells[place], comma) is not None for place in needed)
+
+    comma = sum(is_row(number, True) for number in below[:_SAMPLE]) > sum(is_row(number, False) for number in below[:_SAMPLE])
+    units = [unit_of(heading) for heading in names]
+    if below and header and not is_row(below[0], comma):  # a line of units
+        written = _headings(lines[below[0] - 1])
+        if len(written) == count and all(not cell or unit_of(cell) or cell[0] in "[(-" for cell in written):
+            units = [unit_of(cell) or unit for cell, unit in zip(written, units)]
+            del below[0]
+    if not header:  # columns by number
+        while below and not is_row(below[0], comma):
+            del below[0]
+    if not below:
+        raise input_error(f"{name}: no rows; needs a line with the names of the columns, such as Q,U,P, and rows of numbers")
+    rows = []
+    for number in below:
+        cells = _cells(lines[number - 1], count, comma)
+        if cells is None:
+            raise input_error(
+                f"{name}:{number}: must have {count} cells, as many as the names of the columns, not '{_shown(lines[number - 1])}'"
+            )
+        rows.append([cell.strip("\"'") if len(cell) > 1 and cell[0] == cell[-1] and "," not in cell else cell for cell in cells])
+    for row, number in zip(rows, below):
+        for meaning in places.keys() - optional:
+            cell = row[places[meaning]]
+            if _value(cell, comma) is None:
+                column = lines[number - 1].find(cell) + 1
+                raise input_error(f"{name}:{number}:{column}: column {names[places[meaning]]}: '{_shown(cell)}' is not a number")
+    return {
+        meaning: Column(f"{name}: column {names[place] or place + 1}", units[place], [row[place] for row in rows], comma)
+        for meaning, place in places.items()
+    }
+
+
+def _place(names: Sequence[str], keys: Sequence[str] | int) -> int | None:
+    """The place from 0 of a column by its names in lower case, or by its number from 1."""
+    if isinstance(keys, int):
+        return keys - 1 if 1 <= keys <= len(names) else None
+    found = [name_of(name) for name in names] + [name.strip().lower() for name in names]
+    return next((found.index(key) % len(names) for key in keys if key in found), None)
+
+
+def _header(name: str, lines: Sequence[str], wanted: Names, optional: Sequence[str]) -> tuple[int, list[str]]:
+    """The number of the line with the names of the columns, and these; 0 and empty names for columns by number. Raises InputError."""
+    needed = {meaning: keys for meaning, keys in wanted.items() if meaning not in optional}
+    best: tuple[int, list[str]] = (0, [])
+    fewest = len(needed) + 1
+    for number, line in enumerate(lines[:_SAMPLE], start=1):
+        names = _headings(line)
+        missing = sum(_place(names, keys) is None for keys in needed.values())
+        if any(isinstance(keys, int) for keys in needed.values()) and not _is_heading(line):
+            continue
+        if names and missing < fewest and (not _is_comment(line) or missing == 0):
+            best, fewest = (number, names), missing
+        if missing == 0:
+            return best
+    if all(isinstance(keys, int) for keys in needed.values()):
+        counts = [len(cells) for line in lines[:_SAMPLE] if not _is_comment(line) and (cells := _divided(line, False)[0])]
+        return 0, [""] * max(counts, default=0)
+    used = [line for line in lines if not _is_comment(line)]
+    if len(used) < 2:
+        raise input_error(f"{name}: no rows; needs a line with the names of the columns, such as Q,U,P, and rows of numbers")
+    raise missing_columns(name, needed, best[1])
+
+
+def missing_columns(label: str, wanted: Names, names: Sequence[str]) -> Exception:
+    """The InputError about wanted columns that are not among names."""
+    missing = [str(keys) if isinstance(keys, int) else keys[-1] for keys in wanted.values() if _place(names, keys) is None]
+    short = [word.upper() if len(word) == 1 else word for word in missing]
+    there = ", ".join(_shown(name) for name in names) or "none"
+    return input_error(f"{label}: no column {', '.join(short)}; there are {there}")
+
+
+def columns_of(table: Any, label: str, wanted: Names, optional: Sequence[str] = ()) -> dict[str, Column]:
+    """The columns `wanted` of a mapping or a pandas.DataFrame, as `read_columns` finds them. Raises InputError."""
+    keys = list(table.columns if hasattr(table, "columns") else table)
+    names = [str(key) for key in keys]
+    needed = {meaning: known for meaning, known in wanted.items() if meaning not in optional}
+    if any(_place(names, known) is None for known in needed.values()):
+        raise missing_columns(label, needed, names)
+    places = {meaning: place for meaning, known in wanted.items() if (place := _place(names, known)) is not None}
+    return {
+        meaning: Column(f"{label}: column {names[place]}", unit_of(names[place]), table[keys[place]])
+        for meaning, place in places.items()
+    }
