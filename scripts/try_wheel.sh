@@ -3,7 +3,7 @@
 # case there: sh scripts/try_wheel.sh python3.9 python3.13. By default every python3.9 to python3.13 that is found.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
-wheel=$(ls "$root"/build/wheel/mfv-*.whl)
+wheel=$(ls "$root"/build/wheel/mfv_contact-*.whl)
 [ $# -gt 0 ] || set -- python3.9 python3.10 python3.11 python3.12 python3.13
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -12,6 +12,11 @@ from importlib.resources import files
 from typing import Any
 
 import numpy as np
+
+from ._packages import require
+
+require("plotly", "jinja2")
+
 import plotly.graph_objects as go
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup

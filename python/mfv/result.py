@@ -10,6 +10,7 @@ import h5py
 import numpy as np
 
 from . import _html
+from ._packages import require
 from .errors import MfvError, NotAResult
 
 if TYPE_CHECKING:
@@ -352,6 +353,7 @@ def _field(dataset: h5py.Dataset) -> Field:
 
 def _dataset(fields: Mapping[str, Field], coordinates: Mapping[str, Field]) -> xarray.Dataset:
     """Fields with their coordinates."""
+    require("xarray")
     import xarray
 
     known = {**coordinates, **fields}
@@ -368,6 +370,7 @@ def _dataset(fields: Mapping[str, Field], coordinates: Mapping[str, Field]) -> x
 
 def _stacked(steps: list[Group]) -> xarray.Dataset:
     """The steps in one dataset, along `state`."""
+    require("xarray")
     import xarray
 
     numbers = xarray.Variable((STATE,), np.arange(1, len(steps) + 1), {"long_name": "number of the state in steps"})

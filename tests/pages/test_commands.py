@@ -1,4 +1,4 @@
-"""Commands of python -m mfv that make more than one picture: compare, animate, new."""
+"""Commands of mfv that make more than one picture: compare, animate, new."""
 
 from __future__ import annotations
 
@@ -468,7 +468,7 @@ def test_every_command_teaches(command: str, capsys: pytest.CaptureFixture[str])
         main([command, "--help"])
     assert caught.value.code == 0
     printed = capsys.readouterr().out
-    assert f"python -m mfv {command}" in printed.split("examples:")[1] and len(printed) > 400
+    assert f"mfv {command}" in printed.split("examples:")[1] and len(printed) > 400
 
 
 # --- the overview, and completion in the shell ---
@@ -478,7 +478,7 @@ def test_without_arguments_there_is_an_overview(capsys: pytest.CaptureFixture[st
     assert main([]) == 0
     shown = capsys.readouterr()
     assert shown.err == "" and len(shown.out.splitlines()) < 24
-    for line in ("usage: python -m mfv COMMAND", "  new ", "  study ", "first steps:", "  mfv_run cylinder.nml"):
+    for line in ("usage: mfv COMMAND", "  new ", "  study ", "first steps:", "  mfv_run cylinder.nml"):
         assert line in shown.out
 
 
@@ -491,7 +491,7 @@ def test_new_takes_the_name_of_a_file(tmp_path: Path, monkeypatch: pytest.Monkey
     assert main(["new", "mine.nml"]) == 2 and main(["new", "a.nml", "-o", "b.nml"]) == 2
     complaints = capsys.readouterr().err
     assert "mine.nml: exists; overwrite it with --force" in complaints
-    assert "write 'python -m mfv new cylinder -o b.nml'" in complaints
+    assert "write 'mfv new cylinder -o b.nml'" in complaints
 
 
 @pytest.mark.parametrize(

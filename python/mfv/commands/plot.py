@@ -1,4 +1,4 @@
-"""python -m mfv plot: draw a result."""
+"""mfv plot: draw a result."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ limits (without friction: the deformed surfaces of both bodies); tangential forc
 
 EXAMPLES = """\
 examples:
-  python -m mfv plot mindlin.h5             draw mindlin.png
-  python -m mfv plot mindlin.h5 --stress von_mises
-                                            draw the stresses inside the lower body
-  python -m mfv plot mindlin.h5 --stress sigma_xx --axes physical
-                                            in the units of the case, with the largest tension
-  python -m mfv plot mindlin.h5 -o fig3.pdf --step 2
-                                            draw the state after step 2 as a PDF
-  python -m mfv plot shear_cycles.h5 --cycles
-                                            draw the hysteresis loop and the dissipation over x
+  mfv plot mindlin.h5                 draw mindlin.png
+  mfv plot mindlin.h5 --stress von_mises
+                                      draw the stresses inside the lower body
+  mfv plot mindlin.h5 --stress sigma_xx --axes physical
+                                      in the units of the case, with the largest tension
+  mfv plot mindlin.h5 -o fig3.pdf --step 2
+                                      draw the state after step 2 as a PDF
+  mfv plot shear_cycles.h5 --cycles
+                                      draw the hysteresis loop and the dissipation over x
 """
 
 
