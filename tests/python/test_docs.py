@@ -12,7 +12,7 @@ from scenes import PROJECT
 
 import mfv
 
-PAGES = ("docs/python-api.md", "docs/studies.md", "README.md", "python/README.md")
+PAGES = ("docs/python-api.md", "docs/studies.md", "python/README.md")
 
 
 @pytest.fixture

@@ -78,6 +78,15 @@ def main(arguments: list[str] | None = None) -> int:
         return INTERRUPTED
 
 
+def _as_program(program: str, arguments: list[str]) -> int:
+    """Become a program; return the exit code if that fails."""
+    try:
+        become(program, arguments)
+    except (MfvError, OSError) as error:
+        print(f"mfv: {error}", file=sys.stderr)
+    return UNUSABLE
+
+
 def _overview() -> str:
     """The commands, a line each, and how to begin."""
     lines = [f"mfv {__version__}: two-dimensional frictional elastic contact", "", "usage: mfv COMMAND ...", ""]
@@ -106,7 +115,8 @@ def _parser() -> argparse.ArgumentParser:
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
         module.add_arguments(command)
-        command.set_defaults(command=module.run)
+        if module.NAME not in PROGRAMS:
+            command.set_defaults(command=module.run)
     return parser
 
 
