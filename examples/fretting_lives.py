@@ -128,7 +128,7 @@ def predictions(name: str, nodes: int) -> list[Prediction]:
     found = []
     for row in rows(TESTS / f"{name}.csv"):
         result = solved(ALLOYS[name], row, nodes)
-        half_width = float(result.summary.edge_half_width)
+        half_width = float(result.summary.contact_half_width)
         found.append(Prediction(row["series"], half_width, float(row["life"]), row["failed"] == "yes", lives(ALLOYS[name], result)))
     return found
 
@@ -170,7 +170,7 @@ def critical_sizes(nodes: int) -> None:
             test = {**row, "pad_radius": radius, "shear_load_ratio": "-1", "bulk_load_ratio": "-1"}
             result = solved(alloy, test, nodes)
             hot_spot = mfv.stress.stress(result, 0.0, 0.0).tension.x
-            length = np.geomspace(1.0e-3, 6.0 * float(result.summary.edge_half_width), 50)
+            length = np.geomspace(1.0e-3, 6.0 * float(result.summary.contact_half_width), 50)
             crack = fatigue.edge_crack(result, hot_spot, length)
             threshold = fatigue.short_crack_threshold(length, THRESHOLD, SHORT_CRACK_LENGTH)
             ratios = [float(np.min(ranges / threshold)) for ranges in (crack.range, crack.opening_range)]
