@@ -180,7 +180,8 @@ PANELS: dict[str, tuple[str, str, str]] = {
     "nonlinear_loop": ("cycled", "non-linear shift $U - Q/k$ [mm]", "tangential force $Q$ [N/mm]"),
     "friction_work": ("cycled", "position $x$ [mm]", "dissipation per cycle and area $d$ [N/mm]"),
     "turning": ("pressed", r"rotation $\varphi$ [rad]", "moment $M$"),
-    "tension": ("watched", "load segment", r"stress along the surface $\sigma$ [N/mm$^2$]"),
+    "surface_stress": ("cycled", "position $x$ [mm]", r"stress along the surface $\sigma_{xx}$ [N/mm$^2$]"),
+    "tension": ("watched", "turning point of the last cycle", r"stress along the surface $\sigma$ [N/mm$^2$]"),
     "rolling": ("pressed", "rolled distance $s$", r"sliding $U + h\varphi$"),
 }
 
