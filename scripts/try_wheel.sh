@@ -16,9 +16,9 @@ for python in "$@"; do
   cd "$folder/work"
   "$folder/venv/bin/python" -m pip install --quiet --disable-pip-version-check "$wheel"
   env -i PATH="$folder/venv/bin:/usr/bin:/bin" HOME="$folder" MPLBACKEND=Agg sh -euc '
-    python -m mfv new >/dev/null
-    mfv_run cylinder.nml >summary.txt
-    python -m mfv plot cylinder.h5 >/dev/null
+    mfv new >/dev/null
+    mfv run cylinder.nml >summary.txt
+    mfv plot cylinder.h5 >/dev/null
     python -c "import mfv; result = mfv.read(\"cylinder.h5\"); assert result.certificate.largest < 1e-10"
     ls ./*.png >/dev/null'
   "$folder/venv/bin/python" -c '

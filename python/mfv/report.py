@@ -381,7 +381,6 @@ def _key_numbers(result: Result) -> list[dict[str, str]]:
     return found
 
 
-
 def _tables(result: Result) -> dict[str, list[tuple[str, str, str, str]]]:
     """All numbers of the result: name, value, unit, meaning, by group."""
     groups = (("certificate", result.certificate), ("summary", result.summary), ("observables", result.observables))
