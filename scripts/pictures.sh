@@ -9,7 +9,7 @@ trap 'rm -rf "$work"' EXIT
 cd "$work"
 show() { PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$root/build/release/lib/libmfv.so "$venv/bin/python" -m mfv "$@"; }
 draw() { show plot "$@"; }
-for example in mindlin disk_on_plane disk_in_hole two_cylinders pin_in_bore rolling; do
+for example in disk_on_plane disk_in_hole two_cylinders pin_in_bore rolling; do
   "$bin/mfv_run" "$root/examples/$example.nml" >/dev/null
   draw "$example.h5" -o "$pictures/$example.png"
 done

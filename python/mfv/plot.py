@@ -321,8 +321,8 @@ def parameter_contours(
     ax.set_xlabel(_label("", "x", units[0]).strip())
     ax.set_ylabel(_label("", "y", units[0]).strip())
     if colour_bar:
-        label = f"{field.name}{f' [{_unit(units[1]).strip()}]' if _unit(units[1]) else ''}"
-        ax.figure.colorbar(contours, cax=ax.inset_axes((1.02, 0.0, 0.025, 1.0)), ticks=levels[::4], label=label)
+        scale = ax.figure.colorbar(contours, cax=ax.inset_axes((1.02, 0.0, 0.025, 1.0)), ticks=levels[::4])
+        scale.set_label(f"[{_unit(units[1]).strip()}]" if _unit(units[1]) else "")
     return ax
 
 
