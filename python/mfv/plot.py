@@ -1,8 +1,8 @@
 """Pictures of results: numbers as points, closed forms as lines.
 
-`pressure`, `shear`, `surfaces`, `loop`, `nonlinear_loop`, `friction_work`, `turning`, `rolling`, `tension`, `surface_stress`, `stress_contours` and
-`parameter_contours` draw into axes of yours, or new ones, and return them; `figure` makes a picture of what a result has, `cycles_figure` one of its cycles, `stress_figure` one of the
-stresses inside a body.
+`pressure`, `shear`, `surfaces`, `loop`, `nonlinear_loop`, `friction_work`, `turning`, `rolling`, `tension`, `surface_stress`,
+`stress_contours` and `parameter_contours` draw into axes of yours, or new ones, and return them; `figure` makes a picture of what a
+result has, `cycles_figure` one of its cycles, `stress_figure` one of the stresses inside a body.
 """
 
 from __future__ import annotations
@@ -316,13 +316,12 @@ def parameter_contours(
         ax.plot(peak.x + into_body * ends[:, 0], peak.y + into_body * ends[:, 1], color="white", linewidth=1.5)
     angle = f", {np.degrees(peak.angle) + 0.0:.0f}\N{DEGREE SIGN}" if np.isfinite(peak.angle) else ""
     ax.plot(peak.x, peak.y, "x", color="white", markersize=7, clip_on=False, zorder=5)
-    ax.set_title(f"{field.name}: {peak.value:.4g} at ({_signed(peak.x)}, {_signed(peak.y)}){angle}", fontsize=10)
+    ax.set_title(f"{field.name}: {peak.value:.4g}{_unit(units[1])} at ({_signed(peak.x)}, {_signed(peak.y)}){angle}", fontsize=10)
     ax.set_aspect("equal")
     ax.set_xlabel(_label("", "x", units[0]).strip())
     ax.set_ylabel(_label("", "y", units[0]).strip())
     if colour_bar:
-        scale = ax.figure.colorbar(contours, cax=ax.inset_axes((1.02, 0.0, 0.025, 1.0)), ticks=levels[::4])
-        scale.set_label(f"[{_unit(units[1]).strip()}]" if _unit(units[1]) else "")
+        ax.figure.colorbar(contours, cax=ax.inset_axes((1.02, 0.0, 0.025, 1.0)), ticks=levels[::4])
     return ax
 
 
@@ -493,17 +492,17 @@ def tension(result: Result, ax: Axes | None = None, step: int | None = None) -> 
     of the last cycle, without cycles of the whole load history."""
     ax = _axes(ax)
     history = result.history
-    first = np.flatnonzero(history.event_kind == EventKind.STEP_END)[0]
+    first = int(np.flatnonzero(history.event_kind == EventKind.STEP_END)[0])
     if result.cycles:
         of_step = np.flatnonzero((history.event_kind == EventKind.STEP_END) & (history.step == result.cycles.step[-1]))
-        turns = of_step.size // np.count_nonzero(result.cycles.step == result.cycles.step[-1])
-        first = of_step[max(of_step.size - turns - 1, 0)]
+        turns = of_step.size // int(np.count_nonzero(result.cycles.step == result.cycles.step[-1]))
+        first = int(of_step[max(of_step.size - turns - 1, 0)])
     for body, color in (("lower", NUMBERS), ("upper", CLOSED_FORM)):
         if f"{body}_tension" not in history:
             continue
         ends = np.isfinite(history[f"{body}_surface_stress"]) & (np.arange(history.step.size) >= first)
         rows = np.arange(np.count_nonzero(ends)) + (0 if result.cycles else 1)
-        style = {"marker": "o", "markersize": 3.0}
+        style: dict[str, Any] = {"marker": "o", "markersize": 3.0}
         ax.plot(rows, history[f"{body}_tension"][ends], color=color, linewidth=1.0, label=f"{body} tension", **style)
         stress = history[f"{body}_surface_stress"][ends]
         ax.plot(rows, stress, color=color, linewidth=0.8, linestyle=(0, (4, 3)), label=f"{body}, at stress_at")
