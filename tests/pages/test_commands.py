@@ -553,7 +553,7 @@ def test_without_arguments_there_is_an_overview(capsys: pytest.CaptureFixture[st
     assert main([]) == 0
     shown = capsys.readouterr()
     assert shown.err == "" and len(shown.out.splitlines()) < 24
-    for line in ("usage: mfv COMMAND", "  new ", "  study ", "first steps:", "  mfv run cylinder.nml"):
+    for line in ("usage: mfv COMMAND", "  new ", "  study ", "First steps:", "  mfv run cylinder.nml"):
         assert line in shown.out
 
 
