@@ -272,7 +272,10 @@ def read(path: str | os.PathLike[str]) -> Result:
     with open(path, "rb"):  # raises OSError for a missing or unreadable file
         pass
     if not h5py.is_hdf5(path):
-        raise NotAResult(None, f"{path}: not a result file of MFV; it is not an HDF5 file")
+        why = "not a result file of MFV; it is not an HDF5 file"
+        if os.fspath(path).endswith(".nml"):
+            why = "a case, not a result; solve it first with 'mfv run', which writes the result"
+        raise NotAResult(None, f"{path}: {why}")
     try:
         with h5py.File(path, "r") as file:
             is_ours = "mfv_version" in file.attrs

@@ -459,7 +459,12 @@ def test_new_lists_templates_and_names_what_it_does_not_have(
 
 
 def test_a_misspelled_command_has_a_proposal(capsys: pytest.CaptureFixture[str]) -> None:
-    for word, proposal in (("plto", "did you mean plot?"), ("xyz", "choose from new, run, plot, ")):
+    for word, proposal in (
+        ("plto", "did you mean plot?"),
+        ("a.nml", "did you mean 'mfv run a.nml'?"),
+        ("a.h5", "did you mean 'mfv plot a.h5'?"),
+        ("xyz", "choose from new, run, plot, "),
+    ):
         with pytest.raises(SystemExit) as caught:
             main([word, "case.h5"])
         assert caught.value.code == 2 and f"unknown command '{word}'; {proposal}" in capsys.readouterr().err
@@ -595,6 +600,17 @@ def test_completion_in_the_shell(line: str, expected: set[str], tmp_path: Path) 
     script = '"$0" -m mfv 8>words 9>/dev/null'
     subprocess.run(["bash", "-c", script, sys.executable], cwd=tmp_path, env=environment, check=True, capture_output=True)
     assert {word.strip() for word in (tmp_path / "words").read_text().split("\n")} - {"-h", "--help", "--version"} == expected
+
+
+def test_what_is_no_result_is_told_in_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    case = tmp_path / "case.nml"
+    case.write_text(SHEARED)
+    for name, message in (
+        ("case.nml", "a case, not a result; solve it first with 'mfv run'"),
+        ("no.h5", "No such file or directory"),
+    ):
+        assert main(["plot", str(tmp_path / name)]) == 2
+        assert capsys.readouterr().err.startswith(f"mfv: {tmp_path / name}: {message}")
 
 
 def test_completion_needs_no_argcomplete(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

@@ -51,7 +51,9 @@ def main(arguments: list[str] | None = None) -> int:
         return 0
     names = [module.NAME for module in COMMANDS]
     if not words[0].startswith("-") and words[0] not in names:
-        parser.error(f"unknown command '{words[0]}'{suggestion(words[0], names)}")
+        of_file = {".nml": "run", ".h5": "plot", ".nc": "info"}.get(os.path.splitext(words[0])[1])
+        advice = f"; did you mean 'mfv {of_file} {words[0]}'?" if of_file else suggestion(words[0], names)
+        parser.error(f"unknown command '{words[0]}'{advice}")
     if words[0] in PROGRAMS:
         return _as_program(PROGRAMS[words[0]], words[1:])
     options = parser.parse_args(arguments)
@@ -63,7 +65,7 @@ def main(arguments: list[str] | None = None) -> int:
         _give_up_output()
         return UNUSABLE
     except (MfvError, OSError, ValueError) as error:
-        print(f"mfv: {_with_file(str(error), options)}", file=sys.stderr)
+        print(f"mfv: {_with_file(_message(error), options)}", file=sys.stderr)
         _give_up_output()
         return UNUSABLE
     except ModuleNotFoundError as error:
@@ -138,6 +140,13 @@ def _give_up_output() -> None:
             sys.stdout.flush()
         except OSError:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _message(error: Exception) -> str:
+    """The text of an error; of one of the system, file and reason without its number."""
+    if isinstance(error, OSError) and error.filename and error.strerror:
+        return f"{os.fsdecode(error.filename)}: {error.strerror}"
+    return str(error)
 
 
 def _with_file(message: str, options: argparse.Namespace) -> str:
