@@ -36,7 +36,7 @@ module mfv_conventional_help
       'Examples:', &
       '  mfv_run case.nml                        # writes case.h5', &
       '  mfv_conventional case.nml               # writes case_conventional.h5', &
-      '  python -m mfv plot case_conventional.h5 # draws it', &
+      '  mfv plot case_conventional.h5           # draws it', &
       '', &
       'See also:', &
       '  docs/guide.md, section Comparing with the conventional algorithm. mfv_run(1), mfv_case(5).' &

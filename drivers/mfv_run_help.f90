@@ -76,7 +76,7 @@ module mfv_run_help
       'Examples:', &
       '  mfv_run --check case.nml                      # is it valid, and what will be solved?', &
       '  mfv_run case.nml                              # solve it, write case.h5', &
-      '  python -m mfv plot case.h5 -o case.png        # draw it', &
+      '  mfv plot case.h5                              # draw it', &
       '  mfv_stress case.h5                            # stresses inside the lower body, into case.h5', &
       '  mfv_run --estimate case.nml                   # with error bars', &
       '  mfv_run --sensitivity case.nml                # does the result depend on round-off?', &

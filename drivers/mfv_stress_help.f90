@@ -20,7 +20,7 @@ module mfv_stress_help
       '', &
       '  mfv_run examples/disk_on_plane.nml', &
       '  mfv_stress disk_on_plane.h5', &
-      '  python -m mfv plot disk_on_plane.h5 --stress von_mises', &
+      '  mfv plot disk_on_plane.h5 --stress von_mises', &
       '', &
       'Options:', &
       '  --body lower|upper   the body; lower by default', &

@@ -30,7 +30,7 @@ if __name__ == "__main__":
     peaks = [fatigue.smith_watson_topper(fatigue.stress_cycle(r, *fatigue.graded_points(r))).maximum for r in meshes]
     lives = [fatigue.life(peak.value, ALLOY.smith_watson_topper) for peak in peaks]
     depths = [solved(101, 10000, Wear(coefficient=WEAR, tolerance=t)).observables.wear_depth for t in (0.01, 0.001)]
-    show("stick zone over contact", "", *(r.summary.edge_stick_ratio for r in meshes))
+    show("stick zone over contact", "", *(r.summary.stick_ratio for r in meshes))
     show("largest tension", "MPa", *(r.observables.lower_tension for r in meshes))
     show("  at x", "mm", *(r.observables.lower_tension_x for r in meshes))
     show("wear after 10 000 cycles", "um", *(1000.0 * d for d in depths))

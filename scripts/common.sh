@@ -38,15 +38,16 @@ install_missing() {
   fi
 }
 
-# Python environment of the project, in build/venv: the dependencies of the package, which runs from the source tree.
-# $1: extra of pyproject.toml to install, or nothing.
+# Python environment of the project, in build/venv: the dependencies of the package, which runs from the source tree, and its
+# commands, so that build/venv/bin is all that a user puts on the path. $1: extra of pyproject.toml to install.
 python_environment() {
-  stamp=$venv/done${1:+-$1}
+  stamp=$venv/done-$1
   [ "$stamp" -nt "$root/pyproject.toml" ] && return 0
-  say "Python packages for ${1:-pictures} in build/venv"
+  say "Python packages ($1) in build/venv"
   [ -x "$venv/bin/python" ] || python3 -m venv "$venv"
-  "$venv/bin/python" "$root/scripts/requirements.py" ${1:+"$1"} >"$venv/requirements.txt"
-  "$venv/bin/python" -m pip install --quiet --disable-pip-version-check -r "$venv/requirements.txt"
+  "$venv/bin/python" "$root/scripts/commands.py" "$root/build/release/bin"
+  "$venv/bin/python" "$root/scripts/requirements.py" "$1" >"$venv/requirements.txt"
+  "$venv/bin/python" -m pip install --quiet --disable-pip-version-check -r "$venv/requirements.txt" || return 1
   touch "$stamp"
 }
 
@@ -59,5 +60,5 @@ build() {
   { cmake --preset "$1" && cmake --build --preset "$@" --parallel "$jobs"; } >"$log" 2>&1 || { tail -n 40 "$log"; return 1; }
 }
 
-# Build what a user needs: programs and library, not the tests.
-build_programs() { build release --target mfv_run mfv_stress mfv_conventional; }
+# Build what a user needs, all that cmake --install takes: programs and libraries, not the tests.
+build_programs() { build release --target mfv mfv_static mfv_run mfv_stress mfv_conventional; }

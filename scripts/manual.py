@@ -1,8 +1,8 @@
-"""Manual pages from the --help and --keys of the programs. Standard library only.
+"""Manual pages from the --help and --keys of the programs, and the overview of mfv.
 
-    python3 scripts/manual.py build/release/bin docs/man
+    build/venv/bin/python scripts/manual.py build/release/bin docs/man
 
-Written are mfv_run.1, mfv_stress.1 and mfv_conventional.1 from --help, mfv_case.5 from mfv_run --keys and the beginning of
+Written are mfv.1, mfv_run.1, mfv_stress.1 and mfv_conventional.1 from --help, mfv_case.5 from mfv_run --keys and the beginning of
 docs/namelist.md. A help text consists of its usage, paragraphs, and headings that end in a colon. Below a heading, lines of a
 term, two blanks or more and an explanation are a list, and others are words; examples, and indented lines above the first
 heading, are unchanged.
@@ -21,12 +21,15 @@ PROGRAMS = {
     "mfv_stress": "stresses inside the bodies of a contact that has been solved",
     "mfv_conventional": "solve one case of contact by load steps, for comparison",
 }
+ABOUT_MFV = "write, solve and draw cases of frictional contact, and studies of many"
+# The command without arguments, from the source tree.
+OVERVIEW = f"import sys; sys.path.insert(0, {str(ROOT / 'python')!r}); sys.argv = ['mfv']; from mfv.commands import main; main()"
 # Page, program whose keys it has, document whose beginning it takes, what it is about.
 TEXTS = {
     "mfv_case": ("mfv_run", "docs/namelist.md", "text of a case of frictional contact, with every key"),
 }
 # Day of the pages: the one on which programs or keys changed last.
-DAY = "2026-11-22"
+DAY = "2026-11-25"
 # A term and its explanation in a list of a help text.
 TERM = r"  (\S.*?) {2,}(\S.*)"
 
@@ -44,7 +47,7 @@ def main() -> int:
 
 def pages(programs: Path) -> dict[str, str]:
     """The pages by file name. programs: folder of the programs."""
-    made = {}
+    made = {"mfv.1": program_page("mfv", ABOUT_MFV, output_of(sys.executable, "-c", OVERVIEW))}
     for program, about in PROGRAMS.items():
         made[f"{program}.1"] = program_page(program, about, output_of(programs / program, "--help"))
     for page, (program, document, about) in TEXTS.items():
@@ -120,7 +123,7 @@ def text_page(page: str, about: str, beginning: str, keys: str) -> str:
             stated = value + (f"; unit {unit}" if unit else "") + (f"; default {default.strip('`')}" if default != "-" else "")
             lines += [".TP", f"\\fB{escaped(name.strip('`'))}\\fP", *filled(stated)]
             lines += [".br", *filled(meaning.removesuffix(".") + ".")]
-    programs = ", ".join(f"{program}(1)" for program in PROGRAMS)
+    programs = ", ".join(f"{program}(1)" for program in ("mfv", *PROGRAMS))
     return "\n".join([*lines, ".SH SEE ALSO", *filled(programs)]) + "\n"
 
 

@@ -9,7 +9,7 @@ trap 'rm -rf "$work"' EXIT
 cd "$work"
 show() { PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$root/build/release/lib/libmfv.so "$venv/bin/python" -m mfv "$@"; }
 draw() { show plot "$@"; }
-for example in mindlin disk_on_plane disk_in_hole two_cylinders pin_in_bore rolling; do
+for example in disk_on_plane disk_in_hole two_cylinders pin_in_bore rolling; do
   "$bin/mfv_run" "$root/examples/$example.nml" >/dev/null
   draw "$example.h5" -o "$pictures/$example.png"
 done
@@ -23,6 +23,8 @@ chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --window-size=1
 "$bin/mfv_stress" fretting_pad.h5 >/dev/null
 sed '$d' "$root/examples/fretting_pad.nml" >sheared.nml    # without the cycles
 "$bin/mfv_run" sheared.nml >/dev/null
+PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$root/build/release/lib/libmfv.so "$venv/bin/python" "$root/scripts/first_picture.py" \
+  fretting_pad.h5 "$pictures/fretting_pad.png"
 draw sheared.h5 -o "$pictures/tutorial_shear.png"
 draw fretting_pad.h5 --cycles -o "$pictures/tutorial_cycles.png"
 draw fretting_pad.h5 --stress von_mises -o "$pictures/tutorial_stress.png"
@@ -53,8 +55,8 @@ from mfv import fatigue
 result = mfv.run(sys.argv[1])
 cycle = fatigue.stress_cycle(result, *fatigue.graded_points(result, depth=0.6))
 figure, axes = plt.subplots(1, 2, figsize=(9.5, 2.2), layout="constrained")
-for parameter, ax in zip((fatigue.smith_watson_topper(cycle), fatigue.fatemi_socie(cycle, yield_strength=325)), axes):
-    mfv.plot.parameter_contours(parameter, ax, colour_bar=True).set_xlim(-2.6, -0.2)
+for parameter, unit, ax in zip((fatigue.smith_watson_topper(cycle), fatigue.fatemi_socie(cycle, yield_strength=325)), ("MPa", "1"), axes):
+    mfv.plot.parameter_contours(parameter, ax, colour_bar=True, units=("mm", unit)).set_xlim(-2.6, -0.2)
 figure.savefig(f"{sys.argv[2]}/fatigue_maps.png", dpi=120)
 END
 PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so "$venv/bin/python" "$root/examples/wear.py" "$pictures/wear.png" "$pictures/wear.gif"

@@ -15,7 +15,7 @@ packages="$packages openmpi-bin libopenmpi-dev g++ pkgconf"
 packages="$packages mandoc groff-base"
 # Tests of the C interface under valgrind.
 packages="$packages valgrind"
-# Tests of the pages of python -m mfv report in a browser.
+# Tests of the pages of mfv report in a browser.
 packages="$packages chromium"
 install_missing
 python_environment test

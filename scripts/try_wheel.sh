@@ -3,7 +3,7 @@
 # case there: sh scripts/try_wheel.sh python3.9 python3.13. By default every python3.9 to python3.13 that is found.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
-wheel=$(ls "$root"/build/wheel/mfv-*.whl)
+wheel=$(ls "$root"/build/wheel/mfv_contact-*.whl)
 [ $# -gt 0 ] || set -- python3.9 python3.10 python3.11 python3.12 python3.13
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -16,9 +16,9 @@ for python in "$@"; do
   cd "$folder/work"
   "$folder/venv/bin/python" -m pip install --quiet --disable-pip-version-check "$wheel"
   env -i PATH="$folder/venv/bin:/usr/bin:/bin" HOME="$folder" MPLBACKEND=Agg sh -euc '
-    python -m mfv new >/dev/null
-    mfv_run cylinder.nml >summary.txt
-    python -m mfv plot cylinder.h5 >/dev/null
+    mfv new >/dev/null
+    mfv run cylinder.nml >summary.txt
+    mfv plot cylinder.h5 >/dev/null
     python -c "import mfv; result = mfv.read(\"cylinder.h5\"); assert result.certificate.largest < 1e-10"
     ls ./*.png >/dev/null'
   "$folder/venv/bin/python" -c '

@@ -1,6 +1,6 @@
 """Adds to a wheel the licence texts of the libraries it bundles: python wheel_licences.py WHEEL OUTPUT_FOLDER.
 
-auditwheel has copied the libraries into mfv.libs, under names with a checksum. Each is traced to the Debian package it comes from; the package's
+auditwheel has copied the libraries into mfv_contact.libs, under names with a checksum. Each is traced to the Debian package it comes from; the package's
 copyright file is put beside the wheel's own licence. FFTW and GSL are covered by the GPL, and so is the wheel as a whole: its
 metadata says so. Fails if the licence of a library is not found.
 """
@@ -37,7 +37,7 @@ def main() -> None:
         (info,) = tree.glob("*.dist-info")
         texts = info / "licenses"
         texts.mkdir(exist_ok=True)
-        packages = {package_of(path.name) for path in (tree / "mfv.libs").iterdir()}
+        packages = {package_of(path.name) for path in (tree / "mfv_contact.libs").iterdir()}
         for package in sorted(packages):
             shutil.copyfile(f"/usr/share/doc/{package}/copyright", texts / f"{package}.txt")
         for text in ("GPL-3", "LGPL-3", "GPL-2", "Apache-2.0"):

@@ -89,7 +89,7 @@ def _solved(root: Path, programs: Path, pages: Path, show: object) -> list[Entry
         _save(mfv.plot.figure(solved), pages / picture)
         _save(_small_figure(solved), _place_of_thumbnail(pages / picture))
         (pages / result).unlink()
-        commands = f"mfv_run {source.name}\npython -m mfv plot {result} -o {picture}"
+        commands = f"mfv run {source.name}\nmfv plot {result} -o {picture}"
         title, sentence = _words(text, source.stem)
         entries.append(Entry(source, title, sentence, commands, picture, run.stdout))
     return entries

@@ -78,10 +78,16 @@ def main() -> int:
 
 def write_programs(programs: Path, page: Path) -> None:
     """The page of the programs' --help."""
-    lines = ["# Programs", "", "What `--help` says. The manual pages, `man mfv_run` and so on, have the same, and every key of a"]
-    lines += ["case in `man 5 mfv_case`. Options, files and quantities are completed by bash, zsh and fish.", ""]
+    lines = [
+        "# Programs",
+        "",
+        "What `--help` says; `mfv run` is mfv_run, `mfv stress` is mfv_stress. The manual pages, `man mfv_run`",
+    ]
+    lines += ["and so on, have the same, and every key of a case in `man 5 mfv_case`. Options, files and quantities are"]
+    lines += ["completed by bash, zsh and fish.", ""]
     commands = {program: [programs / program] for program in PROGRAMS}
-    commands |= {f"python -m mfv {each.NAME}": [sys.executable, "-m", "mfv", each.NAME] for each in COMMANDS}
+    others = [each.NAME for each in COMMANDS if not hasattr(each, "PROGRAM")]  # mfv run and mfv stress are programs
+    commands |= {f"mfv {name}": [sys.executable, "-m", "mfv", name] for name in others}
     surroundings = os.environ | {"PYTHONPATH": str(ROOT / "python"), "COLUMNS": "100"}
     for name, command in commands.items():
         shown = subprocess.run([*command, "--help"], check=True, capture_output=True, text=True, env=surroundings)

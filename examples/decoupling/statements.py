@@ -58,7 +58,7 @@ def change(one: mfv.Group, other: mfv.Group) -> float:
 def pressing(results: Mapping[str, mfv.Result]) -> list[Statement]:
     """After the normal force."""
     states = {name: result.steps[0] for name, result in results.items()}
-    width = {name: state.edge_half_width for name, state in states.items()}
+    width = {name: state.contact_half_width for name, state in states.items()}
     shear = {name: state.shear for name, state in states.items()}
     odd = max(np.abs(shear[name] + shear[name][::-1]).max() / np.abs(shear[name]).max() for name in ("full", "goodman"))
     force = float(results["none"].summary.normal_force)

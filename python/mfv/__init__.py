@@ -65,7 +65,7 @@ __all__ = [
 ]
 
 _version_file = _Path(__file__).resolve().parents[2] / "VERSION"
-__version__ = _version_file.read_text().strip() if _version_file.is_file() else _installed_version("mfv")
+__version__ = _version_file.read_text().strip() if _version_file.is_file() else _installed_version("mfv-contact")
 
 
 #: Modules that are loaded on first use, so that matplotlib is loaded for drawing only.

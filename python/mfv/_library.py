@@ -24,9 +24,13 @@ TEXT_SIZE = 16384
 #: The largest number that a C int holds.
 LARGEST_INTEGER = 2**31 - 1
 
+#: The folder above the package: the source tree, or where the package is installed.
+_ABOVE = Path(__file__).resolve().parents[2]
+
 HOW_TO_BUILD = (
-    "build it with 'cmake --preset release && cmake --build --preset release' in the source tree, "
-    "or set MFV_LIBRARY to the path of libmfv.so"
+    f"type\n    cd {_ABOVE} && sh scripts/demo.sh    # builds it; or set MFV_LIBRARY to the path of libmfv.so"
+    if (_ABOVE / "scripts/demo.sh").is_file()
+    else "type\n    pip install .    # in the source tree, builds it; or set MFV_LIBRARY to the path of libmfv.so"
 )
 
 
@@ -180,7 +184,7 @@ def find_library() -> str:
         return str(Path(asked_for).resolve())
     found = next((str(path) for path in _usual_places() if path.is_file()), None) or ctypes.util.find_library("mfv")
     if not found:
-        raise LibraryNotFound(None, f"the MFV library was not found: {HOW_TO_BUILD}")
+        raise LibraryNotFound(None, f"the MFV library was not found; {HOW_TO_BUILD}")
     return found
 
 

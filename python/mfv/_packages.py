@@ -30,23 +30,28 @@ def how_to_install(package: str) -> str:
     return f'"{sys.executable}" -m pip install {" ".join(repr(name) for name in packages)}'
 
 
+def require(*packages: str) -> None:
+    """Raises ModuleNotFoundError with the command that installs it for the first of some optional packages that is missing."""
+    for package in packages:
+        if find_spec(package) is None:
+            raise ModuleNotFoundError(f"the Python package {package} is not installed: {how_to_install(package)}", name=package)
+
+
 def needed(module: str) -> ModuleType:
     """A module of an optional package, imported on first use. Raises ModuleNotFoundError with the command that installs it."""
-    package = module.split(".")[0]
-    if find_spec(package) is None:
-        raise ModuleNotFoundError(f"the Python package {package} is not installed: {how_to_install(package)}", name=package)
+    require(module.split(".")[0])
     return import_module(module)
 
 
 def check_required() -> None:
-    """Raises ModuleNotFoundError if this Python does not have the required packages; `python -m mfv` exits with a message instead."""
+    """Raises ModuleNotFoundError if this Python does not have the required packages; the command line exits with a message instead."""
     missing = [name for name in REQUIRED if find_spec(name) is None]
     if not missing:
         return
     environment = Path(__file__).resolve().parents[2] / "build/venv/bin/python"
     advice = f"use {environment}" if environment.is_file() else how_to_install(missing[0])
     message = f"{sys.executable} does not have the Python packages {', '.join(missing)}: {advice}"
-    if sys.argv[:1] == ["-m"]:  # python -m mfv imports the package before its arguments are read
+    if sys.argv[0] == "-m" or Path(sys.argv[0]).name == "mfv":  # python -m mfv, or its launcher
         print(f"mfv: {message}", file=sys.stderr)
         sys.exit(2)
     raise ModuleNotFoundError(message, name=missing[0])

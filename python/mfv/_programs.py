@@ -4,18 +4,48 @@ from __future__ import annotations
 
 import functools
 import os
+import shutil
+import signal
 import sys
 from pathlib import Path
 
-
-def _become(name: str) -> None:
-    """Replace this process by the program `name` of the package, with the arguments of this one."""
-    program = Path(__file__).resolve().parent / "bin" / name
-    if not program.is_file():
-        sys.exit(f"{name}: {program} not found; install mfv with 'pip install .' or from a wheel")
-    os.execv(program, [str(program), *sys.argv[1:]])
+from ._library import HOW_TO_BUILD, find_library
+from .errors import LibraryNotFound
 
 
-mfv_run = functools.partial(_become, "mfv_run")
-mfv_conventional = functools.partial(_become, "mfv_conventional")
-mfv_stress = functools.partial(_become, "mfv_stress")
+def find_program(name: str) -> Path:
+    """Path of a program: that of the same build as the library, else one on the PATH. Raises LibraryNotFound."""
+    try:
+        beside = Path(find_library()).parents[1] / "bin" / name
+    except (LibraryNotFound, IndexError):  # IndexError: a library of the system, known by its name alone
+        beside = None
+    if beside is not None and beside.is_file():
+        return beside
+    other = shutil.which(name)
+    if other is None or Path(other).resolve() == Path(sys.argv[0]).resolve():  # a command of this package is not the program
+        raise LibraryNotFound(None, f"the program {name} was not found; {HOW_TO_BUILD}")
+    return Path(other)
+
+
+def become(name: str, arguments: list[str]) -> None:
+    """Replace this process by a program: its output, progress, signals and exit code are those of the command.
+
+    Raises LibraryNotFound, OSError.
+    """
+    program = find_program(name)
+    for ignored in (signal.SIGPIPE, signal.SIGXFSZ):  # by Python, and a program inherits what is ignored
+        signal.signal(ignored, signal.SIG_DFL)
+    os.execv(program, [name, *arguments])
+
+
+def _command(name: str) -> None:
+    """A command of the environment. Exits with a message if there is no such program."""
+    try:
+        become(name, sys.argv[1:])
+    except (LibraryNotFound, OSError) as error:
+        sys.exit(f"{name}: {error}")
+
+
+mfv_run = functools.partial(_command, "mfv_run")
+mfv_conventional = functools.partial(_command, "mfv_conventional")
+mfv_stress = functools.partial(_command, "mfv_stress")

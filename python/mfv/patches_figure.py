@@ -23,9 +23,8 @@ MOST_NUMBERS = 20
 def patches_of(result: Result, state: Group) -> list[tuple[float, float]]:
     """Left and right ends of the patches of a state, x: edges between nodes of the last state, else ends of the nodes' intervals."""
     if state is result.state and "patch" in result.patches:
-        edges = np.column_stack((result.patches.contact_left, result.patches.contact_right))
-        ends = np.interp(edges, result.mesh.arc, result.mesh.x) if "arc" in result.mesh else edges
-        return [(float(left), float(right)) for left, right in ends]
+        edges = result.patches.contact_left, result.patches.contact_right
+        return [(float(left), float(right)) for left, right in zip(*edges)]
     half = 0.5 * result.mesh.width
     return [
         (float(result.mesh.x[first] - half[first]), float(result.mesh.x[last] + half[last]))

@@ -1,8 +1,8 @@
 """Pictures of results: numbers as points, closed forms as lines.
 
-`pressure`, `shear`, `surfaces`, `loop`, `nonlinear_loop`, `friction_work`, `turning`, `rolling`, `stress_contours` and `parameter_contours` draw into axes
-of yours, or new ones, and return them; `figure` makes a picture of what a result has, `cycles_figure` one of its cycles, `stress_figure` one of the
-stresses inside a body.
+`pressure`, `shear`, `surfaces`, `loop`, `nonlinear_loop`, `friction_work`, `turning`, `rolling`, `tension`, `surface_stress`,
+`stress_contours` and `parameter_contours` draw into axes of yours, or new ones, and return them; `figure` makes a picture of what a
+result has, `cycles_figure` one of its cycles, `stress_figure` one of the stresses inside a body.
 """
 
 from __future__ import annotations
@@ -21,8 +21,10 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from .codes import EventKind, NodeStatus
+from .errors import MfvError
 from .result import Group, Result, counts, is_last
-from .stress import NAMES, StressField, grid, stored
+from .stress import NAMES, Largest, StressField, grid, stored, stress
+from .stress import surface as surface_height
 from .views import contact, friction_limits, has_friction, has_last_normal_force, heights, is_named, limit_of_friction
 
 if TYPE_CHECKING:
@@ -82,11 +84,17 @@ AXES = ("normalised", "physical")
 #: Size of a panel with its labels in inch.
 PANEL_WIDTH, PANEL_HEIGHT = 3.6, 3.3
 
+#: Tractions of more than this times the median are spikes, which would flatten all others.
+SPIKE = 5.0
+
+#: Panels beside each other; more are in two rows.
+LONGEST_ROW = 4
+
 #: Letters of the caption per inch; width of the key of a legend entry, in letters.
 LETTERS_PER_INCH, KEY_LETTERS = 19, 9
 
-#: Step ends at one place of a load-displacement curve that are all named; of more, the first and the last.
-NAMED_TOGETHER = 4
+#: Turning points of a cycle that are all named on a load-displacement curve; of more, its reversals.
+NAMED_TURNS = 4
 
 
 #: A function that draws a result, or one of its states, into axes.
@@ -96,7 +104,7 @@ Panel = Callable[[Result, "Axes | None", "int | None"], Axes]
 def figure(result: Result, step: int | None = None) -> Figure:
     """A picture of a result: pressure; shear traction, or without friction the deformed surfaces; tangential force over shift,
     with cycles also over the non-linear shift, or, without tangential force, moment over rotation; after rolling, sliding over
-    rolled distance; with `stress_at` the largest tension over the load history.
+    rolled distance; with a bulk stress the stress along the surface; with `stress_at` the largest tension over the last cycle.
 
     `step`: draw `result.steps[step - 1]`, not the last state. Raises ValueError if it does not exist. For a contact with
     several patches the panels show all patches, the patch with the largest load, and the gap.
@@ -114,6 +122,8 @@ def figure(result: Result, step: int | None = None) -> Figure:
             panels.append(nonlinear_loop)
     elif _is_turned(result):
         panels.append(turning)
+    if _has_bulk_stress(result) and _can_have_stresses(result, step):
+        panels.append(surface_stress)
     if _has_tension(result):
         panels.append(tension)
     return _panels_in_a_row(panels, result, step, _caption(result, step))
@@ -148,11 +158,16 @@ def _check_cycles(result: Result) -> None:
 def _panels_in_a_row(panels: Sequence[Panel], result: Result, step: int | None, caption: str) -> Figure:
     """A picture of panels beside each other, with a heading, a legend and a caption."""
     with matplotlib.rc_context(STYLE):
-        picture = Figure(figsize=(len(panels) * PANEL_WIDTH, PANEL_HEIGHT + 1.0), layout="constrained")
-        axes = picture.subplots(1, len(panels), squeeze=False)[0]
-        for panel, ax, letter in zip(panels, axes, "abcde"):
+        picture = Figure(layout="constrained")
+        rows = 1 if len(panels) <= LONGEST_ROW else 2
+        columns = -(-len(panels) // rows)
+        picture.set_size_inches(columns * PANEL_WIDTH, rows * PANEL_HEIGHT + 1.0)
+        axes = list(picture.subplots(rows, columns, squeeze=False).flat)
+        for panel, ax, letter in zip(panels, axes, "abcdef"):
             panel(result, ax, step)
             ax.set_title(f"({letter})")
+        for ax in axes[len(panels) :]:
+            ax.remove()
         picture.suptitle(_heading(result, step), fontsize=12, parse_math=False)
         _add_legend(picture, caption)
     return picture
@@ -285,9 +300,11 @@ def stress_contours(
     return ax
 
 
-def parameter_contours(field: ParameterMap, ax: Axes | None = None, *, colour_bar: bool = False) -> Axes:
+def parameter_contours(
+    field: ParameterMap, ax: Axes | None = None, *, colour_bar: bool = False, units: tuple[str, str] = ("", "")
+) -> Axes:
     """Contours of a fatigue parameter on a grid, in the units of the case, with its maximum marked and there a line along the critical
-    plane. `colour_bar`: with a scale beside them."""
+    plane. `colour_bar`: with a scale beside them. `units`: names of those of length and of the parameter, for the labels."""
     ax = _axes(ax)
     values = np.ma.masked_invalid(field.values)
     levels = MaxNLocator(15).tick_values(0.0, float(values.max()))
@@ -301,10 +318,10 @@ def parameter_contours(field: ParameterMap, ax: Axes | None = None, *, colour_ba
     if peak.tilt > 1.0e-2:  # not by round-off
         angle += f", tilted {np.degrees(peak.tilt):.0f}\N{DEGREE SIGN} out of the plane"
     ax.plot(peak.x, peak.y, "x", color="white", markersize=7, clip_on=False, zorder=5)
-    ax.set_title(f"{field.name}: {peak.value:.4g} at ({_signed(peak.x)}, {_signed(peak.y)}){angle}", fontsize=10)
+    ax.set_title(f"{field.name}: {peak.value:.4g}{_unit(units[1])} at ({_signed(peak.x)}, {_signed(peak.y)}){angle}", fontsize=10)
     ax.set_aspect("equal")
-    ax.set_xlabel("$x$")
-    ax.set_ylabel("$y$")
+    ax.set_xlabel(_label("", "x", units[0]).strip())
+    ax.set_ylabel(_label("", "y", units[0]).strip())
     if colour_bar:
         ax.figure.colorbar(contours, cax=ax.inset_axes((1.02, 0.0, 0.025, 1.0)), ticks=levels[::4])
     return ax
@@ -367,6 +384,7 @@ def pressure(result: Result, ax: Axes | None = None, step: int | None = None) ->
     if "pressure" in result.reference and _same_normal_force(result, step):
         _draw_closed_form(ax, result, result.reference.pressure)
     ax.set_ylim(bottom=0.0)
+    _cut_spikes(ax, state.pressure[state.status != NodeStatus.OPEN])
     ax.set_ylabel(_label("pressure", "p", state.unit("pressure")))
     _frame_contact(ax, result, state)
     return ax
@@ -384,6 +402,8 @@ def shear(result: Result, ax: Axes | None = None, step: int | None = None) -> Ax
     _draw_points(ax, result, state, state.shear)
     if "shear" in result.reference and is_last(result, state):
         _draw_closed_form(ax, result, result.reference.shear)
+    limits = [limit_of_friction(coefficient, state) for _, coefficient in friction_limits(result)]
+    _cut_spikes(ax, np.abs(np.concatenate([state.shear, *limits])[np.tile(state.status != NodeStatus.OPEN, 1 + len(limits))]))
     ax.set_ylabel(_label("shear traction", r"\tau", state.unit("shear")))
     _frame_contact(ax, result, state)
     return ax
@@ -403,6 +423,9 @@ def surfaces(result: Result, ax: Axes | None = None, step: int | None = None) ->
     _draw_points(ax, result, state, lower, label="surface of the lower body", color=SURFACE)
     ax.plot(result.mesh.x, upper, color=MARKS, linewidth=0.9, label="surface of the upper body")
     ax.set_ylabel(_label("height", "y", state.unit("gap")))
+    middle, least = float(np.mean(ax.get_ylim())), 1.0e-3 * abs(float(_loads(result, step)["approach"]))
+    if np.ptp(ax.get_ylim()) < least:  # flat: no axis of round-off
+        ax.set_ylim(middle - least, middle + least)
     _frame_contact(ax, result, state)
     return ax
 
@@ -467,21 +490,94 @@ def rolling(result: Result, ax: Axes | None = None, step: int | None = None) -> 
 
 
 def tension(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
-    """The largest tension along the surfaces, and the stress at the place `stress_at`, at the ends of the steps, rows and turning points
-    of the load history."""
+    """The largest tension along the surfaces, and the stress at the place `stress_at`, at the ends of the steps, rows and turning points:
+    of the last cycle, without cycles of the whole load history."""
     ax = _axes(ax)
     history = result.history
+    first = int(np.flatnonzero(history.event_kind == EventKind.STEP_END)[0])
+    if result.cycles:
+        of_step = np.flatnonzero((history.event_kind == EventKind.STEP_END) & (history.step == result.cycles.step[-1]))
+        turns = of_step.size // int(np.count_nonzero(result.cycles.step == result.cycles.step[-1]))
+        first = int(of_step[max(of_step.size - turns - 1, 0)])
     for body, color in (("lower", NUMBERS), ("upper", CLOSED_FORM)):
         if f"{body}_tension" not in history:
             continue
-        ends = np.isfinite(history[f"{body}_surface_stress"])
-        rows = np.arange(1, np.count_nonzero(ends) + 1)
-        ax.plot(rows, history[f"{body}_tension"][ends], color=color, linewidth=1.0, label=f"{body} tension")
+        ends = np.isfinite(history[f"{body}_surface_stress"]) & (np.arange(history.step.size) >= first)
+        rows = np.arange(np.count_nonzero(ends)) + (0 if result.cycles else 1)
+        style: dict[str, Any] = {"marker": "o", "markersize": 3.0}
+        ax.plot(rows, history[f"{body}_tension"][ends], color=color, linewidth=1.0, label=f"{body} tension", **style)
         stress = history[f"{body}_surface_stress"][ends]
-        ax.plot(rows, stress, color=color, linewidth=0.8, linestyle=(0, (4, 3)), label=f"{body}, at a place")
-    ax.set_xlabel("load segment")
+        ax.plot(rows, stress, color=color, linewidth=0.8, linestyle=(0, (4, 3)), label=f"{body}, at stress_at")
+    ax.set_xlabel("turning point of the last cycle" if result.cycles else "load segment")
+    ax.xaxis.set_major_locator(MaxNLocator(6, integer=True))
     ax.set_ylabel(_label("stress along the surface", r"\sigma", result.state.unit("pressure")))
     return ax
+
+
+def surface_stress(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
+    """Stress along the surface of the lower body (of the upper one over a rigid or a matrix), sigma_xx on a flat one, over x, with the
+    largest tension marked: of the last state, or `step`, and of the saved reversals of the last cycle. Needs the library."""
+    ax = _axes(ax)
+    body, chosen = _stressed_body(result), step or len(result.steps)
+    turns = list(_named_records(result, result.history.tangential_force, step).values()) if result.cycles and step is None else []
+    shown = [number for number in turns if number < chosen and result.steps[number - 1].step == result.cycles.step[-1]]
+    name = "sigma_xx" if result.scene.get(f"{body}_radius") is None else "sigma_thetatheta"
+    for number, style in zip([*shown, step], [*((0, (k + 1, 1.5)) for k in range(len(shown))), "-"]):
+        x = _surface_points(result, result.at(number))
+        field = stress(result, x, surface_height(result, body, x), body=body, step=number)
+        color = NUMBERS if number == step else "0.45"
+        label = f"{'state ' if number else 'last state'}{number or ''}"
+        ax.plot(x, field[name], color=color, linewidth=1.0, linestyle=style, label=f"{body} body, {label}")
+        if number == step and np.isfinite(field.tension.x) and field.tension.value > 0.0:
+            _mark_tension(ax, field.tension, result)
+    ax.set_ylabel(
+        _label("stress along the surface", r"\sigma_{xx}" if name == "sigma_xx" else r"\sigma", result.state.unit("pressure"))
+    )
+    _frame_contact(ax, result, result.at(step))
+    return ax
+
+
+def _mark_tension(ax: Axes, peak: Largest, result: Result) -> None:
+    """Mark the largest tension with its value and place."""
+    units = _unit(result.state.unit("pressure")), _unit(result.mesh.unit("x"))
+    left, right = contact(result, [result.state])
+    beside = peak.x < 0.5 * (left + right)
+    ax.plot(peak.x, peak.value, "o", color=MARKS, markersize=5, markerfacecolor="none", clip_on=False)
+    text = f"{peak.value:.4g}{units[0]}\nat $x$ = {_signed(peak.x)}{units[1]}"
+    ax.annotate(text, (peak.x, peak.value), xytext=(10 if beside else -10, -2), textcoords="offset points",
+                ha="left" if beside else "right", va="top", fontsize=9)  # fmt: skip
+
+
+def _surface_points(result: Result, state: Group) -> np.ndarray:
+    """Points x across the frame of a picture, dense towards the edges of the contact, where the stress peaks."""
+    left, right = contact(result, [state])
+    touching = result.mesh.x[state.status != NodeStatus.OPEN]
+    steps = (right - left) * np.geomspace(1.0e-5, 0.1, 40)
+    edges = state.contact_edge[np.isfinite(state.contact_edge)] if "contact_edge" in state else touching[[0, -1]]
+    close = [edge + side * steps for edge in edges for side in (-1.0, 1.0)]
+    points = np.unique(np.concatenate([np.linspace(left, right, 301), *close]))
+    return points[(points >= left) & (points <= right)]
+
+
+def _stressed_body(result: Result) -> str:
+    """The body whose stresses a picture shows: the lower one if it is elastic and no matrix."""
+    return "upper" if "lower_shear_modulus" not in result.scene else "lower"
+
+
+def _has_bulk_stress(result: Result) -> bool:
+    """Whether a body has a bulk stress."""
+    return "lower_bulk_stress" in result.summary or "upper_bulk_stress" in result.summary
+
+
+def _can_have_stresses(result: Result, step: int | None) -> bool:
+    """Whether stresses can be computed: there is contact, the library, and a body that has them."""
+    try:
+        return (
+            bool((result.at(step).pressure > 0.0).any())
+            and stress(result, [0.0], [0.0], body=_stressed_body(result), step=step) is not None
+        )
+    except (MfvError, ValueError):
+        return False
 
 
 def _has_tension(result: Result) -> bool:
@@ -572,6 +668,16 @@ def _shade_zones(ax: Axes, result: Result, state: Group) -> None:
             labelled.add(status)
 
 
+def _cut_spikes(ax: Axes, sizes: np.ndarray) -> None:
+    """Limit an axis to what most nodes have where a few, at sharp corners, have tractions many times as large; say how large."""
+    usual = SPIKE * float(np.median(sizes)) if sizes.size > 0 else 0.0
+    if not 0.0 < usual < (largest := float(np.max(sizes))):
+        return
+    bottom = ax.get_ylim()[0]
+    ax.set_ylim(max(bottom, -usual) if bottom < 0.0 else bottom, usual)
+    ax.text(0.5, 0.97, f"at the corners up to {largest:.3g}", transform=ax.transAxes, ha="center", va="top", fontsize=9)
+
+
 def _runs(values: np.ndarray) -> Iterator[tuple[int, int, int]]:
     """Value, first and last index of every run of equal values."""
     starts = np.flatnonzero(np.diff(values, prepend=values[0] - 1))
@@ -587,18 +693,48 @@ def _frame_contact(ax: Axes, result: Result, state: Group) -> None:
 
 
 def _mark_step_ends(ax: Axes, result: Result, step: int | None, across: str, up: str) -> None:
-    """Number the ends of steps and reversals, as in `result.steps`, coinciding ones together; mark an early end."""
+    """Number the ends of steps and the reversals of the last cycle, as in `result.steps`, coinciding ones together; mark an early end."""
     history = result.history
     curve = np.column_stack((history[across], history[up]))
     curve_size = np.maximum(np.ptp(curve, axis=0), np.finfo(float).tiny)
-    ends = _places(curve[history.event_kind == EventKind.STEP_END], 0.03 * curve_size)
-    marks = [(place, _enumeration(numbers), "o", step in numbers) for place, numbers in ends]
+    records = _named_records(result, history[up], step)
+    ends = _places(curve[list(records)], list(records.values()), 0.03 * curve_size)
+    marks = [(place, ", ".join(map(str, numbers)), "o", step in numbers) for place, numbers in ends]
     marks += [(place, "stopped", "s", False) for place in curve[history.event_kind == EventKind.STOPPED]]
     relative = np.array([place for place, *_ in marks] or np.empty((0, 2))) / curve_size
     middle = np.mean((curve.min(axis=0), curve.max(axis=0)), axis=0) / curve_size
     for number, (place, text, marker, bold) in enumerate(marks):
         is_far_right = relative[number, 0] > middle[0] + 0.3
         _mark(ax, place, text, marker, bold, _is_labelled_above(relative, number, middle), is_far_right)
+
+
+def _named_records(result: Result, values: np.ndarray, step: int | None) -> dict[int, int]:
+    """Records of the history, from 0, and the numbers, from 1, of the saved states at them that a picture names: ends of steps and, of
+    cycles, the turning points of the last one; of many the reversals of `values` alone; and `step`."""
+    ends: dict[int, list[int]] = {}
+    for record in np.flatnonzero(result.history.event_kind == EventKind.STEP_END):
+        ends.setdefault(int(result.history.step[record]), []).append(int(record))
+    cycles = {int(number): int(np.sum(result.cycles.step == number)) for number in np.unique(result.cycles.get("step", []))}
+    named: dict[int, int] = {}
+    for number, state in enumerate(result.steps, start=1):
+        records = ends.get(int(state.step), [])
+        place = int(state.reversal) - 1
+        if not 0 <= place < len(records):
+            continue
+        here = records[place]
+        turns = len(records) // cycles.get(int(state.step), 1)
+        if number == step or (
+            place >= len(records) - turns
+            and (turns <= NAMED_TURNS or _reverses(values[records], place) or number == len(result.steps))
+        ):
+            named[here] = number
+    return named
+
+
+def _reverses(values: np.ndarray, place: int) -> bool:
+    """Whether values rise before a place and fall after it, or the other way round; the first and the last follow each other."""
+    before, after = values[place] - values[place - 1], values[(place + 1) % len(values)] - values[place]
+    return bool(before * after < 0.0)
 
 
 def _is_labelled_above(places: np.ndarray, number: int, middle: np.ndarray) -> bool:
@@ -621,22 +757,16 @@ def _mark(ax: Axes, place: np.ndarray, text: str, marker: str, bold: bool, above
     ax.annotate(text, tuple(place), xytext=offset, textcoords="offset points", ha=ha, va=va, fontsize=9, fontweight=weight)
 
 
-def _places(points: np.ndarray, tolerance: np.ndarray) -> list[tuple[np.ndarray, list[int]]]:
-    """Points that coincide in a picture, with the numbers, from 1, of all that are there."""
+def _places(points: np.ndarray, numbers: list[int], tolerance: np.ndarray) -> list[tuple[np.ndarray, list[int]]]:
+    """Points that coincide in a picture, with the numbers of all that are there."""
     places: list[tuple[np.ndarray, list[int]]] = []
-    for number, point in enumerate(points, start=1):
-        together = next((numbers for place, numbers in places if np.all(np.abs(place - point) < tolerance)), None)
+    for number, point in zip(numbers, points):
+        together = next((others for place, others in places if np.all(np.abs(place - point) < tolerance)), None)
         if together is None:
             places.append((point, [number]))
         else:
             together.append(number)
     return places
-
-
-def _enumeration(numbers: list[int]) -> str:
-    if len(numbers) > NAMED_TOGETHER:
-        return f"{numbers[0]}, {numbers[1]}, \N{HORIZONTAL ELLIPSIS}, {numbers[-1]}"
-    return ", ".join(str(number) for number in numbers)
 
 
 def _legend_entries(picture: Figure, lines_first: bool = True) -> tuple[list[Artist], list[str]]:

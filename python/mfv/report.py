@@ -12,6 +12,11 @@ from importlib.resources import files
 from typing import Any
 
 import numpy as np
+
+from ._packages import require
+
+require("plotly", "jinja2")
+
 import plotly.graph_objects as go
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
@@ -64,10 +69,10 @@ KEY_NUMBERS = (
     ("summary", "upper_bulk_stress", "bulk stress of the upper body"),
     ("summary", "approach", "approach"),
     ("summary", "shift", "shift U"),
-    ("summary", "edge_half_width", "contact half-width"),
+    ("summary", "contact_half_width", "contact half-width"),
     ("summary", "contact_length", "contact length"),
     ("summary", "patches", "contact patches"),
-    ("summary", "edge_stick_ratio", "stick ratio"),
+    ("summary", "stick_ratio", "stick ratio"),
     ("observables", "peak_pressure", "largest pressure"),
     ("observables", "peak_shear", "largest shear traction"),
     ("summary", "dissipation", "dissipation so far"),
@@ -77,7 +82,7 @@ KEY_NUMBERS = (
 )
 
 #: Key numbers that are meaningless without friction.
-OF_FRICTION = ("tangential_force", "shift", "edge_stick_ratio", "peak_shear", "dissipation")
+OF_FRICTION = ("tangential_force", "shift", "stick_ratio", "peak_shear", "dissipation")
 
 #: Columns of the table of cycles.
 CYCLE_COLUMNS = (
@@ -364,7 +369,7 @@ def _key_numbers(result: Result) -> list[dict[str, str]]:
     for group_name, name, shown in KEY_NUMBERS:
         group: Group = getattr(result, group_name)
         if name in group and name not in omitted and not math.isnan(group[name]):
-            bar = result.error_estimate.get(f"{_ESTIMATED.get(name, name)}_error")
+            bar = result.error_estimate.get(f"{name}_error")
             found.append(
                 {
                     "name": shown,
@@ -374,10 +379,6 @@ def _key_numbers(result: Result) -> list[dict[str, str]]:
                 }
             )
     return found
-
-
-#: Key numbers that an error estimate knows under other names.
-_ESTIMATED = {"edge_half_width": "contact_half_width", "edge_stick_ratio": "stick_ratio"}
 
 
 def _tables(result: Result) -> dict[str, list[tuple[str, str, str, str]]]:

@@ -10,6 +10,7 @@ import h5py
 import numpy as np
 
 from . import _html
+from ._packages import require
 from .errors import MfvError, NotAResult
 
 if TYPE_CHECKING:
@@ -271,7 +272,10 @@ def read(path: str | os.PathLike[str]) -> Result:
     with open(path, "rb"):  # raises OSError for a missing or unreadable file
         pass
     if not h5py.is_hdf5(path):
-        raise NotAResult(None, f"{path}: not a result file of MFV; it is not an HDF5 file")
+        why = "not a result file of MFV; it is not an HDF5 file"
+        if os.fspath(path).endswith(".nml"):
+            why = "a case, not a result; solve it first with 'mfv run', which writes the result"
+        raise NotAResult(None, f"{path}: {why}")
     try:
         with h5py.File(path, "r") as file:
             is_ours = "mfv_version" in file.attrs
@@ -352,6 +356,7 @@ def _field(dataset: h5py.Dataset) -> Field:
 
 def _dataset(fields: Mapping[str, Field], coordinates: Mapping[str, Field]) -> xarray.Dataset:
     """Fields with their coordinates."""
+    require("xarray")
     import xarray
 
     known = {**coordinates, **fields}
@@ -368,6 +373,7 @@ def _dataset(fields: Mapping[str, Field], coordinates: Mapping[str, Field]) -> x
 
 def _stacked(steps: list[Group]) -> xarray.Dataset:
     """The steps in one dataset, along `state`."""
+    require("xarray")
     import xarray
 
     numbers = xarray.Variable((STATE,), np.arange(1, len(steps) + 1), {"long_name": "number of the state in steps"})

@@ -1,4 +1,4 @@
-"""Commented cases: the templates of `python -m mfv new`.
+"""Commented cases: the templates of `mfv new`.
 
 `names` lists them, `write` writes one with the files that it needs. The comments are the descriptions of the keys in
 templates/keys.md, the output of mfv_run --keys.
@@ -72,7 +72,7 @@ def _meanings() -> dict[tuple[str, str], str]:
 
 
 def is_study(name: str) -> bool:
-    """Whether a template is for `python -m mfv study`."""
+    """Whether a template is for `mfv study`."""
     return re.search(r"^&sweep\b", text(name), flags=re.MULTILINE) is not None
 
 

@@ -113,7 +113,7 @@ BROKEN = {
     "an escape": (CASE + b"\n\x1b[31m", "case.nml:6: control character 27: not a text file"),
     "old Macintosh": (CASE.replace(b"\n", b"\r"), "case.nml:1: a carriage return without a line feed"),
     "binary": (bytes(range(256)) * 10, "case.nml:1: control character 0: not a text file"),
-    "HDF5": (b"\x89HDF\r\n\x1a\n", "case.nml:1: byte 137 is not UTF-8"),
+    "HDF5": (b"\x89HDF\r\n\x1a\n", "case.nml:1: an HDF5 file, such as a result; a text is needed"),
     "a long key": (CASE + b"&scene " + b"x" * LONG + b"=1 /", "x...=1: unknown key"),
     "a long group": (CASE + b"&" + b"x" * LONG + b" /", "x...: unknown group; groups are scene body"),
     "a long value": (CASE + b"&scene plane='" + b"\xc3\xa4" * LONG + b"' /", "...': must be 'strain' or 'stress'"),

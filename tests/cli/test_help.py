@@ -9,9 +9,12 @@ from pathlib import Path
 
 import pytest
 
+from mfv import commands
+
 ROOT = Path(__file__).resolve().parents[2]
 BIN = Path(os.environ.get("MFV_RUN", ROOT / "build/release/bin/mfv_run")).parent
 PROGRAMS = ("mfv_run", "mfv_stress", "mfv_conventional")
+COMMANDS = [module.NAME for module in commands.COMMANDS]
 PAGES = sorted((ROOT / "docs/man").glob("*.[15]"))
 BASH = ROOT / "drivers/completion/mfv.bash"
 COMPLETE, INPUT = 0, 2
@@ -106,14 +109,16 @@ def test_manual_pages_are_those_of_the_programs(tmp_path):
     subprocess.run([sys.executable, ROOT / "scripts/manual.py", BIN, tmp_path], check=True)
     assert {page.name for page in PAGES} == {page.name for page in tmp_path.iterdir()}
     for page in PAGES:
-        assert page.read_text() == (tmp_path / page.name).read_text(), "python3 scripts/manual.py build/release/bin docs/man"
+        assert page.read_text() == (tmp_path / page.name).read_text(), (
+            "build/venv/bin/python scripts/manual.py build/release/bin docs/man"
+        )
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_manual_pages_have_every_key_and_option(page):
     text = page.read_text().replace(r"\-", "-")
     if page.suffix == ".1":
-        expected = options_of(page.stem)
+        expected = COMMANDS if page.stem == "mfv" else options_of(page.stem)
     else:
         keys = run("mfv_run", "--keys").stdout
         expected = re.findall(r"^\| `(\w+)`", keys, re.MULTILINE)

@@ -1,11 +1,14 @@
-"""Commands of python -m mfv that make more than one picture: compare, animate, new."""
+"""Commands of mfv: run and stress, which are programs; compare, animate, new, which make more than one picture."""
 
 from __future__ import annotations
 
 import os
 import re
+import shutil
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import h5py
@@ -372,7 +375,7 @@ def test_an_mp4_needs_ffmpeg_and_says_so(
 # --- new ---
 
 MFV_RUN = Path(os.environ.get("MFV_RUN", PROJECT / "build" / "release" / "bin" / "mfv_run"))
-PROGRAMS = {"mfv_run": str(MFV_RUN), "python": sys.executable}
+COMMAND_LINE = [sys.executable, "-m", "mfv"]
 
 
 @pytest.mark.parametrize("name", template.names())
@@ -384,10 +387,10 @@ def test_every_template_is_solved(name: str, tmp_path: Path, capsys: pytest.Capt
     assert sorted(printed[:-1]) == sorted(str(place) for place in tmp_path.iterdir())
     program, *arguments = printed[-1].removeprefix("solve it: ").split()
     environment = {**os.environ, "PYTHONPATH": str(Path(mfv.__file__).parents[1])}
-    command = [PROGRAMS[program], *arguments]
-    ended = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert program == "mfv"
+    ended = subprocess.run([*COMMAND_LINE, *arguments], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, ended.stderr
-    if arguments[:3] == ["-m", "mfv", "study"]:
+    if arguments[0] == "study":
         with xarray.open_dataset(tmp_path / "case.nc") as table:
             assert table["outcome"].size == 24 and set(table["outcome"].values.flat) == {"complete"}
             assert table["largest_residual"].max() < 1e-11
@@ -456,7 +459,12 @@ def test_new_lists_templates_and_names_what_it_does_not_have(
 
 
 def test_a_misspelled_command_has_a_proposal(capsys: pytest.CaptureFixture[str]) -> None:
-    for word, proposal in (("plto", "did you mean plot?"), ("xyz", "choose from new, plot, ")):
+    for word, proposal in (
+        ("plto", "did you mean plot?"),
+        ("a.nml", "did you mean 'mfv run a.nml'?"),
+        ("a.h5", "did you mean 'mfv plot a.h5'?"),
+        ("xyz", "choose from new, run, plot, "),
+    ):
         with pytest.raises(SystemExit) as caught:
             main([word, "case.h5"])
         assert caught.value.code == 2 and f"unknown command '{word}'; {proposal}" in capsys.readouterr().err
@@ -471,6 +479,78 @@ def test_every_command_teaches(command: str, capsys: pytest.CaptureFixture[str])
     assert f"mfv {command}" in printed.split("examples:")[1] and len(printed) > 400
 
 
+# --- programs ---
+
+SLIDING = SHEARED + "&step tangential_force=1.0e-3 /\n"
+
+
+def both(arguments: list[str], folder: Path, **options: object) -> list[subprocess.CompletedProcess[str]]:
+    """`mfv run` and mfv_run with the same arguments."""
+    commands = ([*COMMAND_LINE, "run", *arguments], [str(MFV_RUN), *arguments])
+    return [subprocess.run(command, cwd=folder, capture_output=True, text=True, **options) for command in commands]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [
+        (["--check", "case.nml"], 0),
+        (["case.nml"], 3),
+        (["absent.nml"], 2),
+        ([], 2),
+        (["--version"], 0),
+        (["--help"], 0),
+        (["-x"], 2),
+    ],
+)
+def test_run_is_the_program(arguments: list[str], code: int, tmp_path: Path) -> None:
+    (tmp_path / "case.nml").write_text(SLIDING.format(**{**MINDLIN, "title": "sliding"}))
+    command, program = both(arguments, tmp_path)
+    assert command.returncode == program.returncode == code
+    assert (command.stderr, timeless(command.stdout)) == (program.stderr, timeless(program.stdout))
+
+
+def timeless(text: str) -> str:
+    """A summary without the times."""
+    return re.sub(r"\S+ s$", "", text, flags=re.MULTILINE)
+
+
+def test_run_ends_by_the_signals_of_the_program(tmp_path: Path) -> None:
+    """A closed pipe, which Python ignores, and Ctrl-C while it solves; progress is shown on a terminal."""
+    many = "&output history='none' /\n" + SHEARED.replace("cycles=1", "cycles=20000").replace("{nodes}", "301")
+    (tmp_path / "case.nml").write_text(many.format(**{**MINDLIN, "title": "many cycles"}))
+    started = subprocess.Popen([*COMMAND_LINE, "run", "case.nml"], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    while not Path(f"/proc/{started.pid}/exe").resolve().name.startswith("mfv_run"):
+        time.sleep(0.02)
+    time.sleep(0.3)
+    started.send_signal(signal.SIGINT)
+    out, _ = started.communicate(timeout=60)
+    assert started.returncode == 130 and b"interrupted" in out
+    shell = f"{' '.join(COMMAND_LINE)} run --keys | true; exit ${{PIPESTATUS[0]}}"
+    direct = f"{MFV_RUN} --keys | true; exit ${{PIPESTATUS[0]}}"
+    codes = [subprocess.run(["bash", "-c", line], capture_output=True).returncode for line in (shell, direct)]
+    assert codes[0] == codes[1]
+    shown = shown_on_a_terminal([*COMMAND_LINE, "run", "--estimate", str(PROJECT / "examples/cycles.nml")], cwd=tmp_path)
+    assert shown == b"" or b"%" in shown
+
+
+def test_stress_is_the_program(tmp_path: Path) -> None:
+    solved(tmp_path / "a.h5")
+    done = subprocess.run([*COMMAND_LINE, "stress", "a.h5", "--points", "5", "4"], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0 and "largest von Mises" in done.stdout
+    assert mfv.read(tmp_path / "a.h5").stresses["last/lower"].von_mises.shape == (4, 5)
+
+
+def test_without_a_library_two_lines_say_what_to_type(tmp_path: Path) -> None:
+    """A copy of the package, with no build beside it and none of the system."""
+    shutil.copytree(Path(mfv.__file__).parent, tmp_path / "python/mfv", ignore=shutil.ignore_patterns("lib", "bin", "__pycache__"))
+    (tmp_path / "VERSION").write_text("0.0.0\n")
+    bare = {"PATH": "/nowhere", "PYTHONPATH": str(tmp_path / "python"), "HOME": str(tmp_path), "PYTHONDONTWRITEBYTECODE": "1"}
+    for arguments in (["run", "case.nml"], ["stress", "a.h5"], ["study", str(PROJECT / "examples/study.nml"), "--list"]):
+        done = subprocess.run([*COMMAND_LINE, *arguments], cwd=tmp_path, env=bare, capture_output=True, text=True)
+        assert done.returncode == 2, done.stderr
+        assert len(done.stderr.splitlines()) == 2 and "not found; type\n    pip install ." in done.stderr
+
+
 # --- the overview, and completion in the shell ---
 
 
@@ -478,26 +558,29 @@ def test_without_arguments_there_is_an_overview(capsys: pytest.CaptureFixture[st
     assert main([]) == 0
     shown = capsys.readouterr()
     assert shown.err == "" and len(shown.out.splitlines()) < 24
-    for line in ("usage: python -m mfv COMMAND", "  new ", "  study ", "first steps:", "  mfv_run cylinder.nml"):
+    for line in ("usage: mfv COMMAND", "  new ", "  study ", "First steps:", "  mfv run cylinder.nml"):
         assert line in shown.out
 
 
 def test_new_takes_the_name_of_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(["new", "mine.nml"]) == main(["new", "weakening.nml"]) == 0
-    assert "solve it: mfv_run mine.nml" in capsys.readouterr().out
+    assert "solve it: mfv run mine.nml" in capsys.readouterr().out
     assert Path("mine.nml").read_text() == template.text("cylinder").replace("FILE", "mine")
     assert Path("weakening.nml").read_text() == template.text("weakening").replace("FILE", "weakening")
     assert main(["new", "mine.nml"]) == 2 and main(["new", "a.nml", "-o", "b.nml"]) == 2
     complaints = capsys.readouterr().err
     assert "mine.nml: exists; overwrite it with --force" in complaints
-    assert "write 'python -m mfv new cylinder -o b.nml'" in complaints
+    assert "write 'mfv new cylinder -o b.nml'" in complaints
 
 
 @pytest.mark.parametrize(
     ("line", "expected"),
     [
-        ("mfv ", {"new", "plot", "info", "compare", "animate", "report", "study", "identify", "profile", "fatigue"}),
+        ("mfv ", {"new", "run", "plot", "info", "stress", "compare", "animate", "report", "study", "identify", "profile", "fatigue"}),
+        ("mfv run s", {"s.nml"}),
+        ("mfv run --res", {"--resume"}),
+        ("mfv stress --b", {"--body"}),
         ("mfv an", {"animate"}),
         ("mfv plot --st", {"--step", "--stress"}),
         ("mfv new two", {"two_cylinders"}),
@@ -517,6 +600,17 @@ def test_completion_in_the_shell(line: str, expected: set[str], tmp_path: Path) 
     script = '"$0" -m mfv 8>words 9>/dev/null'
     subprocess.run(["bash", "-c", script, sys.executable], cwd=tmp_path, env=environment, check=True, capture_output=True)
     assert {word.strip() for word in (tmp_path / "words").read_text().split("\n")} - {"-h", "--help", "--version"} == expected
+
+
+def test_what_is_no_result_is_told_in_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    case = tmp_path / "case.nml"
+    case.write_text(SHEARED)
+    for name, message in (
+        ("case.nml", "a case, not a result; solve it first with 'mfv run'"),
+        ("no.h5", "No such file or directory"),
+    ):
+        assert main(["plot", str(tmp_path / name)]) == 2
+        assert capsys.readouterr().err.startswith(f"mfv: {tmp_path / name}: {message}")
 
 
 def test_completion_needs_no_argcomplete(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,4 +1,4 @@
-"""Pages of python -m mfv report, shown in a headless browser (Debian's chromium, controlled by playwright)."""
+"""Pages of mfv report, shown in a headless browser (Debian's chromium, controlled by playwright)."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from scenes import PROJECT
 
 import mfv
 
-PAGES = ("docs/python-api.md", "docs/studies.md", "README.md", "python/README.md")
+PAGES = ("docs/python-api.md", "docs/studies.md", "python/README.md")
 
 
 @pytest.fixture
@@ -42,3 +42,17 @@ def test_the_examples_of_a_page_run(page: str, directory: Path) -> None:
         exec(compile("\n" * (line - 1) + code, str(PROJECT / page), "exec"), names)
     pyplot.close("all")
     assert any(isinstance(value, (mfv.Result, xarray.Dataset)) for value in names.values())
+
+
+def test_the_limits_of_the_linear_solvers_are_those_of_the_source() -> None:
+    """The table of docs/performance.md has the numbers of solver_costs.f90, chosen as linear_solvers.f90 does."""
+    source = (PROJECT / "src/algorithms/solvers/solver_costs.f90").read_text()
+    limits = {name: int(number) for name, number in re.findall(r"\b(most_\w+) = (\d+)", source)}
+    table = {
+        "events": ("most_coupled", "most_one_way", "most_apart"),
+        "large increments, no friction": ("most_at_once_coupled", "most_at_once", "most_at_once"),
+        "Dahl's law": ("most_bristles_coupled", "most_bristles", "most_bristles"),
+    }
+    page = (PROJECT / "docs/performance.md").read_text()
+    for name, columns in table.items():
+        assert f"| {name} | {' | '.join(str(limits[column]) for column in columns)} |" in page

@@ -618,7 +618,7 @@ def test_upper_body_is_the_mirror_image() -> None:
     scene = pad_scene("fretting_pad")
     scene.upper = mfv.Body.power(0.5 / 127.0, 2.0, youngs_modulus=74100, poisson_ratio=0.33)
     result = scene.run()
-    edge = float(result.summary.edge_half_width)
+    edge = float(result.summary.contact_half_width)
     x = np.array([-edge, edge])
     lower, upper = (fatigue.stress_cycle(result, x, np.zeros(2), body=body).stress for body in mfv.stress.BODIES)
     assert lower[-1, 0, 0] > 50.0

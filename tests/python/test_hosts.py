@@ -53,7 +53,7 @@ def test_two_contacts_in_series_follow_the_closed_form(host: ModuleType) -> None
             loads = case.loads
             assert loads.tangential_force == pytest.approx(force, rel=1e-6)
             assert loads.normal_force == pytest.approx(host.WEIGHT, rel=1e-8)
-            edges = case["summary/edge_stick_ratio"]
+            edges = case["summary/stick_ratio"]
             assert edges == pytest.approx(np.sqrt(1.0 - force / (mu * host.WEIGHT)), abs=2e-3)
     turned, at = force, top
     for top in (4.0e-4, -3.0e-4):  # unloading: twice the shift at half the change of the force (Masing)

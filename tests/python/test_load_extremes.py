@@ -64,7 +64,7 @@ def test_extremes_are_those_of_the_states(seed: int) -> None:
     # Between nodes at edges of stick zones, so not below the nodes.
     shear = np.max([np.abs(state.shear).max() for state in states])
     assert shear <= seen.largest_shear <= 1.1 * shear
-    ratios = np.array([state.edge_stick_ratio for state in states])
+    ratios = np.array([state.stick_ratio for state in states])
     assert seen.smallest_stick_ratio == pytest.approx(ratios.min(), rel=1e-9)
     assert seen.largest_stick_ratio == pytest.approx(ratios.max(), rel=1e-9)
     assert ratios[int(seen.smallest_stick_ratio_row) - 1] == pytest.approx(ratios.min(), rel=1e-9)

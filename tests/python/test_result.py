@@ -180,7 +180,8 @@ PANELS: dict[str, tuple[str, str, str]] = {
     "nonlinear_loop": ("cycled", "non-linear shift $U - Q/k$ [mm]", "tangential force $Q$ [N/mm]"),
     "friction_work": ("cycled", "position $x$ [mm]", "dissipation per cycle and area $d$ [N/mm]"),
     "turning": ("pressed", r"rotation $\varphi$ [rad]", "moment $M$"),
-    "tension": ("watched", "load segment", r"stress along the surface $\sigma$ [N/mm$^2$]"),
+    "surface_stress": ("cycled", "position $x$ [mm]", r"stress along the surface $\sigma_{xx}$ [N/mm$^2$]"),
+    "tension": ("watched", "turning point of the last cycle", r"stress along the surface $\sigma$ [N/mm$^2$]"),
     "rolling": ("pressed", "rolled distance $s$", r"sliding $U + h\varphi$"),
 }
 
@@ -243,6 +244,51 @@ def test_contours_of_stresses_take_an_axes_or_make_one(cycled: mfv.Result) -> No
         assert made.child_axes[0].get_ylabel() == r"$\sigma_\mathrm{vM}$$/p_0$"
     finally:
         pyplot.close(made.figure)
+
+
+def numbers_on(ax: Axes) -> list[int]:
+    """The numbers of states that a curve names."""
+    return sorted(int(number) for text in ax.texts for number in text.get_text().split(",") if number.strip().isdigit())
+
+
+def test_curves_name_saved_states_of_the_last_cycle(cycled: mfv.Result) -> None:
+    """Steps 1 and 2, and the two reversals of the second of two cycles; of many turning points the reversals and the end."""
+    assert [int(state.reversal) for state in cycled.steps] == [1, 1, 1, 2, 3, 4]
+    assert numbers_on(mfv.plot.loop(cycled, Figure().subplots())) == [1, 2, 5, 6]
+    phase = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
+    turning_points = mfv.History(tangential_force=2.0e-4 * np.sin(phase), period=24, cycles=3)
+    kept = mfv.Output(states="last_cycle")
+    result = cylinder(mfv.Step(normal_force=5.0e-4), coupling="full", output=kept, history=turning_points).run(check=True)
+    named = numbers_on(mfv.plot.loop(result, Figure().subplots()))
+    assert len(result.steps) == 25 and named[0] == 1 and named[-1] == 25 and len(named) == 4
+    forces = [result.steps[number - 1].tangential_force for number in named]
+    assert max(forces) == pytest.approx(2.0e-4) and min(forces) == pytest.approx(-2.0e-4)
+    assert 9 in numbers_on(mfv.plot.loop(result, Figure().subplots(), 9))
+
+
+def test_a_bulk_stress_adds_the_stress_along_the_surface(cycled: mfv.Result) -> None:
+    """Its peak is the tension of the summary; without a bulk stress there is no such panel in the picture."""
+    pulled = mfv.Step(tangential_force=2.0e-4, lower_bulk_stress=1.0e-3)
+    result = cylinder(PRESS, pulled, output=mfv.Output(stress_at=0.02)).run(check=True)
+    labels = [ax.get_ylabel() for ax in mfv.plot.figure(result).axes]
+    assert r"stress along the surface $\sigma_{xx}$" in labels and len(labels) == 5
+    assert all("sigma_{xx}" not in ax.get_ylabel() for ax in mfv.plot.figure(cycled).axes)
+    drawn_stress = drawn(mfv.plot.surface_stress(result, Figure().subplots()))
+    assert np.nanmax(drawn_stress) == pytest.approx(result.observables.lower_tension, rel=0.02)
+
+
+def test_spikes_at_corners_do_not_flatten_the_rest() -> None:
+    punch = mfv.Scene(
+        mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.3),
+        mfv.Body.flat_punch(0.4),
+        mesh=mfv.Mesh(nodes=401),
+        steps=[mfv.Step(normal_force=1.0e-3)],
+    ).run(check=True)
+    ax = mfv.plot.pressure(punch, Figure().subplots())
+    assert ax.get_ylim()[1] == pytest.approx(mfv.plot.SPIKE * np.median(punch.state.pressure))
+    assert f"up to {punch.state.pressure.max():.3g}" in ax.texts[0].get_text()
+    surfaces = mfv.plot.surfaces(punch, Figure().subplots())
+    assert np.ptp(surfaces.get_ylim()) > 1.0e-4 * abs(punch.summary.approach)
 
 
 def test_panels_are_all_tested_here() -> None:

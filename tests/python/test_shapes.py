@@ -35,7 +35,7 @@ def scene(upper: mfv.Body, force: float, *, lower: mfv.Body = HALF_PLANE, nodes:
 
 def edges(result: mfv.Result) -> tuple[float, float]:
     """Half-width of the contact and stick ratio, between nodes."""
-    return float(result.summary.edge_half_width), float(result.summary.edge_stick_ratio)
+    return float(result.summary.contact_half_width), float(result.summary.stick_ratio)
 
 
 def warnings(result: mfv.Result) -> list[str]:
@@ -151,7 +151,7 @@ def test_meshes_grow_under_named_shapes() -> None:
     pressed = scene(mfv.Body.wedge(ANGLE, rigid=True), 0.1 * WEDGE_FORCE, nodes=41)
     with pressed.contact() as contact:
         contact.advance(normal_force=WEDGE_FORCE)
-        assert contact.result().summary.edge_half_width == pytest.approx(1.0, abs=5e-4)
+        assert contact.result().summary.contact_half_width == pytest.approx(1.0, abs=5e-4)
     with pytest.raises(mfv.errors.InputError, match="datum: is needed"):
         mfv.run(mfv.Scene(HALF_PLANE, mfv.Body.wedge(1.0, rigid=True), steps=[mfv.Step(approach=0.01)]))
     with pytest.raises(mfv.errors.InputError, match="half_width: is needed"):
@@ -168,7 +168,7 @@ def test_parabolas_have_no_end() -> None:
             result = mfv.run(mfv.Scene(lower, mfv.Body.disk(1.0, rigid=True), mesh=mesh, steps=press))
             exact = np.sqrt(4 * force / np.pi)
             assert result.reference.contact_half_width == pytest.approx(exact, rel=1e-14)
-            assert result.summary.edge_half_width == pytest.approx(exact, rel=3e-4)
+            assert result.summary.contact_half_width == pytest.approx(exact, rel=3e-4)
             assert result.state.pressure.max() == pytest.approx(exact / 2, rel=1e-3)
             assert all("small strains" in warning for warning in warnings(result))
 

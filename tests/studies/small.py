@@ -73,10 +73,10 @@ def environment():
 
 
 def command(*arguments):
-    """The words of `python -m mfv study`."""
+    """The words of `mfv study`."""
     return [sys.executable, "-m", "mfv", "study", *map(str, arguments)]
 
 
 def run(*arguments, cwd, **options):
-    """`python -m mfv study` in a folder."""
+    """`mfv study` in a folder."""
     return subprocess.run(command(*arguments), cwd=cwd, capture_output=True, text=True, timeout=300, env=environment(), **options)

@@ -1,4 +1,4 @@
-"""`python -m mfv study` as a user runs it: tables, messages with their lines, and restarts after any end."""
+"""`mfv study` as a user runs it: tables, messages with their lines, and restarts after any end."""
 
 import contextlib
 import csv

@@ -105,7 +105,7 @@ def findings(one: dict[str, Any]) -> list[str]:
 #: Rows of the table: quantities by name, the first that matches counts.
 FAMILIES = {
     "extremes over the last cycle or history": r"(largest|smallest)_.*|stick_ratio_(lowest|highest)",
-    "edges of the contact, number of patches": r"contact_(half_width|left|right|length|centre)|edge_half_width|half_width_number|patches",
+    "edges of the contact, number of patches": r"contact_(half_width|left|right|length|centre)|half_width_number|patches",
     "stick zones": r"(edge_)?stick_(ratio|left|right|length|zones)",
     "peak pressure": r"peak_pressure|pressure_number",
     "peak shear": r"peak_shear|shear_number",

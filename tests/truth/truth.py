@@ -112,7 +112,7 @@ def closed_forms(problem: Problem) -> dict[str, float]:
     kappa = (3 - nu) / (1 + nu) if problem.one("scene").get("plane") == "stress" else 3 - 4 * nu
     normal, tangential, mu = loads
     half_width = float(form.half_width(normal, elastic["shear_modulus"], kappa))
-    found = {"observables/contact_half_width": half_width, "summary/edge_half_width": half_width}
+    found = {"observables/contact_half_width": half_width, "summary/contact_half_width": half_width}
     if form.peak:
         found["observables/peak_pressure"] = float(form.peak(normal, half_width))
     if tangential:

@@ -30,18 +30,18 @@ WORDS = ("right", "within bars", "flagged", "unknown", "finding")
 GROUPS = ("summary", "observables", "cycles", "patches")
 #: What is not a number of the problem: counts of nodes and of work, numbers of cycles and blocks.
 SKIPPED = WORK | NUMBERS | TIED | {"contact_nodes", "patch", "cycle", "cycles", "block", "friction_work"}
-#: Counted in whole intervals, or at nodes, as their descriptions say: right up to an interval.
-COUNTED = {"summary/contact_half_width", "summary/stick_ratio", "observables/largest_pressure_x", "cycles/largest_pressure_x"}
+#: At nodes, as their descriptions say: right up to an interval.
+COUNTED = {"observables/largest_pressure_x", "cycles/largest_pressure_x"}
 
 _EDGES = r".*half_width|half_width_number|contact_(length|left|right|centre.*)|patch_shift.*|patches"
-_STICK = r"(edge_)?stick_ratio|stick_(left|right|length|zones)"
+_STICK = r"stick_ratio|stick_(left|right|length|zones)"
 _TRACTIONS = r"peak_(pressure|shear)|(pressure|shear)_number"
 _TENSION = r"(lower|upper)_tension(_x)?"
 _CYCLE = r"cycle_dissipation|dissipation_number|loss_factor|.*_force_work|.*stress_work|moment_work"
 _MOTIONS = r"approach.*|shift.*|rotation.*|.*stiffness.*"
 #: Names after "not resolved:" in a warning, and the quantities that follow from the one that is named; others stand for themselves.
 NAMED = {
-    "contact_half_width": r"(contact_|edge_)?half_width(_number)?|contact_(left|right|centre)",
+    "contact_half_width": r"(contact_)?half_width(_number)?|contact_(left|right|centre)",
     "contact_length": r"contact_(length|left|right|centre)|patches",
     "stick_ratio": _STICK,
     "peak_pressure": r"peak_pressure|pressure_number",
@@ -80,13 +80,11 @@ _POSITION = r"contact_(left|right)"
 _STICK_POSITION = r"stick_(left|right|length)"
 #: Quantities that are equal to an observable of another name.
 EQUAL = {
-    "edge_stick_ratio": "stick_ratio",
     "stick_ratio_lowest": "smallest_stick_ratio",
     "stick_ratio_highest": "largest_stick_ratio",
 }
 #: Observables whose relative bars add up to that of a quantity.
 FACTORS = {
-    "edge_half_width": ("contact_length",),
     "half_width_number": ("contact_half_width",),
     "pressure_number": ("peak_pressure", "contact_half_width"),
     "shear_number": ("peak_shear", "contact_half_width"),

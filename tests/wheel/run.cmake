@@ -4,7 +4,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/../support/steps.cmake)
 file(REMOVE_RECURSE ${WORK_DIR})
 # Not optimised: compiled in half the time.
 step(${CMAKE_COMMAND} -E env SKBUILD_CMAKE_BUILD_TYPE=Debug sh ${SOURCE_DIR}/scripts/wheel.sh)
-file(GLOB wheel ${SOURCE_DIR}/build/wheel/mfv-*.whl)
+file(GLOB wheel ${SOURCE_DIR}/build/wheel/mfv_contact-*.whl)
 step(${PYTHON} -m venv ${WORK_DIR}/venv)
 set(python ${WORK_DIR}/venv/bin/python)
 step(${python} -m pip install --quiet --disable-pip-version-check --no-index --no-deps ${wheel})

@@ -56,7 +56,7 @@ def test_library_and_h5py_share_a_process(tmp_path):
     again = mfv.run(EXAMPLES / "mindlin.nml", output=tmp_path / "again.h5")
     assert np.array_equal(mfv.read(tmp_path / "again.h5").state.shear, again.state.shear)
     folders = {path.parent for path in loaded("libhdf5")}
-    assert SITE / "mfv.libs" in folders and len(folders) == 2
+    assert SITE / "mfv_contact.libs" in folders and len(folders) == 2
 
 
 @pytest.mark.parametrize("program", PROGRAMS)
@@ -83,7 +83,7 @@ def test_files_of_the_package_are_there(tmp_path):
 
 
 def test_licences_of_bundled_libraries():
-    (info,) = SITE.glob("mfv-*.dist-info")
+    (info,) = SITE.glob("mfv_contact-*.dist-info")
     metadata = (info / "METADATA").read_text()
     assert "License-Expression: BSD-3-Clause AND GPL-3.0-or-later\n" in metadata
     texts = {path.name for path in (info / "licenses").iterdir()}

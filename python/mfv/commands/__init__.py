@@ -1,4 +1,4 @@
-"""The command line of the package, `python -m mfv COMMAND`: one module for each command."""
+"""The command line of the package, `mfv COMMAND`: one module for each command."""
 
 from __future__ import annotations
 
@@ -6,38 +6,40 @@ import argparse
 import os
 import sys
 import traceback
-from pathlib import Path
 
 from .. import __version__
 from .._packages import how_to_install
+from .._programs import become
 from .._suggestions import suggestion
 from ..errors import MfvError
-from . import animate, compare, fatigue, identify, info, new, plot, profile, report, study
+from . import animate, compare, fatigue, identify, info, new, plot, profile, report, run, stress, study
 from .completion import complete
 
 UNUSABLE = 2  # exit code for unusable input, the same as that of mfv_run
 INTERRUPTED = 130  # exit code after Ctrl-C, the same as that of mfv_run
 
-COMMANDS = (new, plot, info, compare, animate, report, study, identify, profile, fatigue)
+COMMANDS = (new, run, plot, info, stress, compare, animate, report, study, identify, profile, fatigue)
+
+#: Commands that are programs, with all their options.
+PROGRAMS = {module.NAME: module.PROGRAM for module in (run, stress)}
 
 EXAMPLES = """\
 examples:
-  python -m mfv new                         write a commented case, cylinder.nml
-  mfv_run examples/mindlin.nml              write mindlin.h5
-  python -m mfv info mindlin.h5             print its contents
-  python -m mfv plot mindlin.h5             draw mindlin.png
-  python -m mfv compare goodman.h5 full.h5  compare two results
-  python -m mfv animate mindlin.h5          animate the load history, mindlin.gif
-  python -m mfv report mindlin.h5           write a web page, mindlin.html
-  python -m mfv study study.nml -o study.csv
-                                            solve many cases, write one table
-  python -m mfv identify rig.nml loops.csv --free friction%mu=0.6
-                                            parameters from measured loops
-  python -m mfv profile scan.x3p -o scan.txt
-                                            a measured profile as a text for &body
-  python -m mfv fatigue tests.csv           fatigue tests and predicted lives
+  mfv new                             write a commented case, cylinder.nml
+  mfv run examples/mindlin.nml        write mindlin.h5
+  mfv info mindlin.h5                 print its contents
+  mfv plot mindlin.h5                 draw mindlin.png
+  mfv compare goodman.h5 full.h5      compare two results
+  mfv animate mindlin.h5              animate the load history, mindlin.gif
+  mfv report mindlin.h5               write a web page, mindlin.html
+  mfv study study.nml -o study.csv
+                                      solve many cases, write one table
+  mfv identify rig.nml loops.csv --free friction%mu=0.6
+                                      parameters from measured loops
+  mfv profile scan.x3p -o scan.txt    a measured profile as a text for &body
+  mfv fatigue tests.csv               fatigue tests and predicted lives
 
-'python -m mfv COMMAND --help' explains each command.
+'mfv COMMAND --help' explains each command.
 """
 
 
@@ -51,7 +53,11 @@ def main(arguments: list[str] | None = None) -> int:
         return 0
     names = [module.NAME for module in COMMANDS]
     if not words[0].startswith("-") and words[0] not in names:
-        parser.error(f"unknown command '{words[0]}'{suggestion(words[0], names)}")
+        of_file = {".nml": "run", ".h5": "plot", ".nc": "info"}.get(os.path.splitext(words[0])[1])
+        advice = f"; did you mean 'mfv {of_file} {words[0]}'?" if of_file else suggestion(words[0], names)
+        parser.error(f"unknown command '{words[0]}'{advice}")
+    if words[0] in PROGRAMS:
+        return _as_program(PROGRAMS[words[0]], words[1:])
     options = parser.parse_args(arguments)
     try:
         code: int = options.command(options) or 0
@@ -61,7 +67,7 @@ def main(arguments: list[str] | None = None) -> int:
         _give_up_output()
         return UNUSABLE
     except (MfvError, OSError, ValueError) as error:
-        print(f"mfv: {_with_file(str(error), options)}", file=sys.stderr)
+        print(f"mfv: {_with_file(_message(error), options)}", file=sys.stderr)
         _give_up_output()
         return UNUSABLE
     except ModuleNotFoundError as error:
@@ -76,26 +82,29 @@ def main(arguments: list[str] | None = None) -> int:
         return INTERRUPTED
 
 
-def _program() -> str:
-    """How the user calls this program."""
-    return "mfv" if Path(sys.argv[0]).stem == "mfv" else "python -m mfv"
+def _as_program(program: str, arguments: list[str]) -> int:
+    """Become a program; return the exit code if that fails."""
+    try:
+        become(program, arguments)
+    except (MfvError, OSError) as error:
+        print(f"mfv: {error}", file=sys.stderr)
+    return UNUSABLE
 
 
 def _overview() -> str:
-    """The commands, a line each, and how to begin."""
-    mfv = _program()
-    lines = [f"mfv {__version__}: two-dimensional frictional elastic contact", "", f"usage: {mfv} COMMAND ...", ""]
+    """The commands, a line each, and how to begin; the manual page is made from it (docs/man)."""
+    lines = ["usage: mfv COMMAND ...", "", f"Two-dimensional frictional elastic contact, version {__version__}.", "", "Commands:"]
     lines += [f"  {module.NAME:10}{module.HELP}" for module in COMMANDS]
-    steps = (f"{mfv} new cylinder.nml", "mfv_run cylinder.nml", f"{mfv} plot cylinder.h5")
+    steps = ("mfv new cylinder.nml", "mfv run cylinder.nml", "mfv plot cylinder.h5")
     meanings = ("write a commented case", "solve it, write cylinder.h5", "draw cylinder.png")
-    lines += ["", "first steps:", *(f"  {step:34}{meaning}" for step, meaning in zip(steps, meanings))]
-    return "\n".join([*lines, "", f"'{mfv} COMMAND --help' explains each command."])
+    lines += ["", "First steps:", *(f"  {step:26}{meaning}" for step, meaning in zip(steps, meanings))]
+    return "\n".join([*lines, "", "'mfv COMMAND --help' explains each command."])
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog=_program(),
-        description="Write a case, inspect the result files of mfv_run, solve many cases that differ in some values.",
+        prog="mfv",
+        description="Write and solve a case, look at its result, solve many cases that differ in some values.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -110,7 +119,8 @@ def _parser() -> argparse.ArgumentParser:
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
         module.add_arguments(command)
-        command.set_defaults(command=module.run)
+        if module.NAME not in PROGRAMS:
+            command.set_defaults(command=module.run)
     return parser
 
 
@@ -132,6 +142,13 @@ def _give_up_output() -> None:
             sys.stdout.flush()
         except OSError:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _message(error: Exception) -> str:
+    """The text of an error; of one of the system, file and reason without its number."""
+    if isinstance(error, OSError) and error.filename and error.strerror:
+        return f"{os.fsdecode(error.filename)}: {error.strerror}"
+    return str(error)
 
 
 def _with_file(message: str, options: argparse.Namespace) -> str:

@@ -1,4 +1,4 @@
-"""python -m mfv animate: animate the load history."""
+"""mfv animate: animate the load history."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ ffmpeg or the Python package imageio-ffmpeg.
 
 EXAMPLES = """\
 examples:
-  python -m mfv animate shear_cycles.h5     write shear_cycles.gif
-  python -m mfv animate shear_cycles.h5 -o cycles.mp4 --frames 300 --rate 30
-  python -m mfv animate cycles.h5 --kept --rate 2
-                                            the states of the file, two per second
+  mfv animate shear_cycles.h5         write shear_cycles.gif
+  mfv animate shear_cycles.h5 -o cycles.mp4 --frames 300 --rate 30
+  mfv animate cycles.h5 --kept --rate 2
+                                      the states of the file, two per second
 """
 
 

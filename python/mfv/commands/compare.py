@@ -1,4 +1,4 @@
-"""python -m mfv compare: compare two results."""
+"""mfv compare: compare two results."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ divided by the largest traction. Tractions on different meshes are interpolated 
 
 EXAMPLES = """\
 examples:
-  python -m mfv compare goodman.h5 full.h5  print the differences, draw goodman_full.png
-  python -m mfv compare coarse.h5 fine.h5 -o mesh.pdf
-  python -m mfv compare yesterday.h5 today.h5 --no-picture --tolerance 1e-9
-                                            exit code 1 if the tractions differ by more
+  mfv compare goodman.h5 full.h5      print the differences, draw goodman_full.png
+  mfv compare coarse.h5 fine.h5 -o mesh.pdf
+  mfv compare yesterday.h5 today.h5 --no-picture --tolerance 1e-9
+                                      exit code 1 if the tractions differ by more
 """
 
 DIFFERENT = 1  # exit code, with --tolerance

@@ -1,4 +1,4 @@
-"""python -m mfv identify: parameters of a scene from measured loops."""
+"""mfv identify: parameters of a scene from measured loops."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ docs/identify.md.
 
 EXAMPLES = """\
 examples:
-  python -m mfv identify rig.nml loops.csv --free friction%mu=0.6 --free rig_stiffness=5e4
-                                            print the estimate, draw loops.png
-  python -m mfv identify rig.nml loops.csv --free friction%mu=0.6 --shift large
-                                            the machine prescribes the shift in test 'large'
-  python -m mfv identify rig.nml daq.txt --free friction%mu=0.6 --column shift=LVDT --unit shift=um --thickness 8
-                                            columns of other names and units; forces, not forces per thickness
+  mfv identify rig.nml loops.csv --free friction%mu=0.6 --free rig_stiffness=5e4
+                                      print the estimate, draw loops.png
+  mfv identify rig.nml loops.csv --free friction%mu=0.6 --shift large
+                                      the machine prescribes the shift in test 'large'
+  mfv identify rig.nml daq.txt --free friction%mu=0.6 --column shift=LVDT --unit shift=um --thickness 8
+                                      columns of other names and units; forces, not forces per thickness
 """
 
 

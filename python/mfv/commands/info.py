@@ -1,4 +1,4 @@
-"""python -m mfv info: print the contents of a result or of the table of a study."""
+"""mfv info: print the contents of a result or of the table of a study."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._html import unit
+from .._packages import require
 from ..result import Group, Result, kept, read
 from ..studies.plan import is_table
 from .completion import complete_files
@@ -26,8 +27,8 @@ values, units and meanings.
 
 EXAMPLES = """\
 examples:
-  python -m mfv info mindlin.h5             a result
-  python -m mfv info study.nc               columns of a table
+  mfv info mindlin.h5                 a result
+  mfv info study.nc                   columns of a table
 """
 
 
@@ -40,6 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> None:
     """Print. Raises OSError, NotAResult."""
     if is_table(options.file):
+        require("xarray", "h5netcdf")
         import xarray  # here, since results are read without it
 
         with xarray.open_dataset(options.file, engine="h5netcdf") as table:

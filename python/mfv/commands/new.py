@@ -1,4 +1,4 @@
-"""python -m mfv new: write a commented case from a template."""
+"""mfv new: write a commented case from a template."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ beside it. Existing files are overwritten only with --force.
 
 EXAMPLES = """\
 examples:
-  python -m mfv new                         write cylinder.nml
-  python -m mfv new joint.nml               write the default template to joint.nml
-  python -m mfv new --list                  list the templates
-  python -m mfv new pin_in_bore -o joint.nml
-                                            write another template
-  mfv_run joint.nml                         solve it
+  mfv new                             write cylinder.nml
+  mfv new joint.nml                   write the default template to joint.nml
+  mfv new --list                      list the templates
+  mfv new pin_in_bore -o joint.nml
+                                      write another template
+  mfv run joint.nml                   solve it
 """
 
 DEFAULT = "cylinder"
@@ -57,7 +57,7 @@ def run(options: argparse.Namespace) -> None:
     path = target(path, Path(f"{name}.nml"), (".nml",), [])
     for place in template.write(name, path, written, options.force):
         print(place)
-    print(f"solve it: {'python -m mfv study' if template.is_study(name) else 'mfv_run'} {path}")
+    print(f"solve it: {'mfv study' if template.is_study(name) else 'mfv run'} {path}")
 
 
 def _template_and_file(chosen: str, output: Path | None, names: Collection[str]) -> tuple[str, Path | None]:
@@ -67,5 +67,5 @@ def _template_and_file(chosen: str, output: Path | None, names: Collection[str])
     path = Path(chosen)
     name = path.stem if path.stem in names else DEFAULT
     if output is not None:
-        raise ValueError(f"'{chosen}' is a file name and -o gives another; write 'python -m mfv new {name} -o {output}'")
+        raise ValueError(f"'{chosen}' is a file name and -o gives another; write 'mfv new {name} -o {output}'")
     return name, path

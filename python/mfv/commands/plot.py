@@ -1,4 +1,4 @@
-"""python -m mfv plot: draw a result."""
+"""mfv plot: draw a result."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ Of the table of a study (study.nc) draw a column over an axis; hollow markers ar
 
 EXAMPLES = """\
 examples:
-  python -m mfv plot mindlin.h5             draw mindlin.png
-  python -m mfv plot mindlin.h5 --stress von_mises
-                                            draw the stresses inside the lower body
-  python -m mfv plot mindlin.h5 --stress sigma_xx --axes physical
-                                            in the units of the case, with the largest tension
-  python -m mfv plot mindlin.h5 -o fig3.pdf --step 2
-                                            draw the state after step 2 as a PDF
-  python -m mfv plot shear_cycles.h5 --cycles
-                                            draw the hysteresis loop and the dissipation over x
-  python -m mfv plot study.nc --column lower_tension --over friction%mu
-                                            draw a column of a study over one of its axes
+  mfv plot mindlin.h5                 draw mindlin.png
+  mfv plot mindlin.h5 --stress von_mises
+                                      draw the stresses inside the lower body
+  mfv plot mindlin.h5 --stress sigma_xx --axes physical
+                                      in the units of the case, with the largest tension
+  mfv plot mindlin.h5 -o fig3.pdf --step 2
+                                      draw the state after step 2 as a PDF
+  mfv plot shear_cycles.h5 --cycles
+                                      draw the hysteresis loop and the dissipation over x
+  mfv plot study.nc --column lower_tension --over friction%mu
+                                      draw a column of a study over one of its axes
 """
 
 

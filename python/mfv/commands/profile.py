@@ -1,4 +1,4 @@
-"""python -m mfv profile: a measured profile as a text file for &body."""
+"""mfv profile: a measured profile as a text file for &body."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ SurfaceTopography. Lengths are converted to one unit, and heights, which instrum
 
 EXAMPLES = """\
 examples:
-  python -m mfv profile scan.x3p -o scan.txt
+  mfv profile scan.x3p -o scan.txt
                                             the middle line of a map, in mm
-  python -m mfv profile scan.opd --line 120 --along y --unit um
+  mfv profile scan.opd --line 120 --along y --unit um
                                             another line, in micrometres
-  python -m mfv profile trace.csv -o scan.txt --file-unit um --lambda-s 0.0025
+  mfv profile trace.csv -o scan.txt --file-unit um --lambda-s 0.0025
                                             a text without a unit; without waves shorter than 2.5 micrometres
 """
 

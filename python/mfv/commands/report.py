@@ -1,4 +1,4 @@
-"""python -m mfv report: write a result as one web page."""
+"""mfv report: write a result as one web page."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ printed. Needs the Python packages plotly and jinja2.
 
 EXAMPLES = """\
 examples:
-  python -m mfv report mindlin.h5           write mindlin.html
-  python -m mfv report mindlin.h5 --states 60 -o report.html
-                                            with states between those saved in the file
+  mfv report mindlin.h5               write mindlin.html
+  mfv report mindlin.h5 --states 60 -o report.html
+                                      with states between those saved in the file
 """
 
 

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import argparse
+import re
+import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
+from .._programs import find_program
+from ..errors import LibraryNotFound
 from ..load_history import LoadHistory, with_states_between
 from ..result import Result
-from .completion import complete_files
+from .completion import IS_COMPLETING, complete_files
 
 
 def at_least(least: int) -> Callable[[str], int]:
@@ -35,6 +39,19 @@ def add_output(parser: argparse.ArgumentParser, metavar: str, meaning: str) -> N
 def add_result(parser: argparse.ArgumentParser, name: str = "file", metavar: str = "RESULT.h5") -> None:
     """Add the argument for a result file."""
     complete_files(parser.add_argument(name, type=Path, metavar=metavar, help="result file"), "h5")
+
+
+def add_program(parser: argparse.ArgumentParser, program: str, metavar: str) -> None:
+    """Add what the shell completes of a command that becomes a program: files, and the options that its --help lists."""
+    complete_files(parser.add_argument("file", metavar=metavar), Path(metavar).suffix[1:])
+    if IS_COMPLETING:
+        try:
+            shown = subprocess.run([find_program(program), "--help"], capture_output=True, text=True).stdout
+        except (LibraryNotFound, OSError):
+            return
+        for option in re.findall(r"^  (?:-\w, )?(--[a-z]+)", shown, re.MULTILINE):
+            if option != "--help":
+                parser.add_argument(option)
 
 
 def solved_between(options: argparse.Namespace, result: Result, states: int) -> LoadHistory:

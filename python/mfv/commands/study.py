@@ -1,4 +1,4 @@
-"""python -m mfv study: solve many cases that differ in some values."""
+"""mfv study: solve many cases that differ in some values."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ cases are solved. See docs/studies.md.
 
 EXAMPLES = """\
 examples:
-  python -m mfv study study.nml --list               check it and list its cases
-  python -m mfv study study.nml                      solve it on all processors, write study.nc
-  python -m mfv study study.nml -o study.csv         one row per case, for a spreadsheet
-  python -m mfv study study.nml --case 17 > 17.nml   print case 17 for mfv_run
+  mfv study study.nml --list              check it and list its cases
+  mfv study study.nml                     solve it on all processors, write study.nc
+  mfv study study.nml -o study.csv        one row per case, for a spreadsheet
+  mfv study study.nml --case 17 > 17.nml  print case 17 for mfv_run
   mpiexec -n 64 python -m mpi4py.futures -m mfv study study.nml --executor mpi
 """
 
@@ -78,7 +78,7 @@ def run(options: argparse.Namespace) -> int | None:
         print(keys_in_markdown())
         return None
     if options.file is None:
-        raise ValueError("no study given; write 'python -m mfv study STUDY.nml'")
+        raise ValueError("no study given; write 'mfv study STUDY.nml'")
     study = read_study(options.file)
     study.error_estimate = options.estimate
     if options.case is not None:

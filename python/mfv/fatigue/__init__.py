@@ -2,7 +2,7 @@
 
 From a result to a life: `graded_points` and `stress_cycle` give stresses over the last cycle; `smith_watson_topper` and others a map of a
 parameter with its maximum; `averaged_cycle` its average over a critical distance; `life` with a `StrainLife` the cycles to initiation;
-`edge_crack` whether a short crack arrests. Lives need scipy, rainflow counting pyLife (`pip install 'mfv[fatigue]'`).
+`edge_crack` whether a short crack arrests. Lives need scipy, rainflow counting pyLife (the extra `fatigue`).
 """
 
 from .cracks import EdgeCrack, edge_crack, short_crack_threshold, stress_intensity

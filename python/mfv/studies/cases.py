@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from .. import _datum, errors
 from .._library import OBSERVER, library, library_version, text_buffer, text_for, text_of
+from .._packages import require
 from ..case import Case, writing
 from ..result import Field
 from ..scene import _scene_handle, _set_data, _set_key, _text_of_scene, created
@@ -335,6 +336,7 @@ def _field(case: Case, path: str) -> Field | None:
 def one_blas_thread() -> Any:
     """Limit BLAS to one thread in this process, until the context that this returns ends: the study uses the processors, and its
     results are bit-identical."""
+    require("threadpoolctl")
     import threadpoolctl
 
     library()  # threadpoolctl only sees loaded libraries

@@ -13,6 +13,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from .._packages import require
+
+require("xarray", "h5netcdf")
+
 import xarray
 from numpy.typing import NDArray
 

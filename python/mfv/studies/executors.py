@@ -15,6 +15,7 @@ from concurrent.futures import TimeoutError as FuturesTimeout
 from ctypes import c_int
 from typing import Any
 
+from .._packages import require
 from .cases import Job, Solved, one_blas_thread, solve, solve_here
 
 #: Names of executors; 'dask:ADDRESS' is a running cluster.
@@ -98,12 +99,14 @@ def opened(executor: str | Executor, workers: int | None) -> Iterator[Executor]:
         elif name == "processes":
             yield stack.enter_context(_processes(workers or processors()))
         elif name == "mpi":
+            require("mpi4py")
             from mpi4py.futures import MPIPoolExecutor
 
             pool = MPIPoolExecutor(max_workers=workers)
             stack.callback(pool.shutdown, cancel_futures=True)
             yield pool
         else:
+            require("dask", "distributed")
             from dask.distributed import Client, LocalCluster
 
             cluster = address or stack.enter_context(

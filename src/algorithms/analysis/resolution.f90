@@ -157,12 +157,30 @@ contains
          why = 'only '//to_text(nodes)//trim(merge(' node is  ', ' nodes are', nodes == 1))//' in contact'
          if (patches > 1) why = why//' in the patch near x = '//to_text(model%x((patch%first + patch%last)/2), 4)//', one of '// &
                                 to_text(patches)//' patches with '//to_text(count(in_contact(status)))//' nodes'
-         call add_unresolved(unresolved, all_quantities(simulation), why, 'use '// &
+         call add_unresolved(unresolved, all_quantities(simulation), why, advice_on_heights(model%scene%lower, 'lower')// &
+                             advice_on_heights(model%scene%upper, 'upper')//'use '// &
                              trim(needed_mesh(model, simulation%contact%state, sum(model%width(patch%first:patch%last)), &
                                               fewest_patch_nodes))//' for '// &
                              to_text(fewest_patch_nodes)//' nodes in each patch')
       end associate
    end subroutine check_patches
+
+   !> Advice for a profile so steep that its heights are probably in another unit than its positions; else empty.
+   pure function advice_on_heights(body, name) result(advice)
+      type(body_type), intent(in) :: body
+      character(*), intent(in) :: name
+      character(:), allocatable :: advice
+      real(wp), parameter :: steep = 1.0_wp
+      real(wp) :: slope
+      integer :: n
+
+      advice = ''
+      if (body%shape /= shape_profile) return
+      n = size(body%position)
+      slope = sum(abs(body%height(2:) - body%height(:n - 1)))/(body%position(n) - body%position(1))
+      if (slope > steep) advice = 'check height_scale of the '//name//' body, whose heights change by '//to_text(slope, 2)// &
+                                  ' per unit of x, or '
+   end function advice_on_heights
 
    !> A profile with more points than the mesh has nodes, which changes the pressures between them.
    subroutine check_profile(simulation, upper, unresolved)

@@ -16,6 +16,9 @@ module mfv_body_reader
    private
    public :: check_bodies, read_body, check_pair, check_matrix, read_datums
 
+   !> Clearance of a neat fit, over the radius: a smaller one changes the contact by less than 1e-4 of it.
+   real(wp), parameter :: neat_clearance = 1.0e-8_wp
+
 contains
 
    !> Two bodies with a shape each, of which one at least is elastic.
@@ -240,13 +243,22 @@ contains
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(in) :: scene
       type(error_type), allocatable, intent(out) :: error
-      integer :: shapes(2)
+      real(wp) :: radius
+      integer :: hole, shapes(2)
 
       shapes = [scene%lower%shape, scene%upper%shape]
       if (any(shapes == shape_profile .or. shapes == shape_matrix)) return
       if (any(shapes == shape_hole)) then
-         if (.not. scene%curvature() > 0.0_wp) call reader%complain('body', findloc(shapes, shape_hole, dim=1), 'radius', &
-                                                                    'a hole needs a disk of smaller radius inside it', error)
+         hole = findloc(shapes, shape_hole, dim=1)
+         if (scene%curvature() > 0.0_wp) return
+         if (any(shapes == shape_disk)) then
+            radius = merge(scene%upper%radius, scene%lower%radius, hole == 1)
+          call reader%complain('body', hole, 'radius', 'must be above the radius of the disk in it, '//to_text(radius)//'; for '// &
+                                 'a neat fit give a clearance of 1e-8 of it, radius='// &
+                                 to_text(radius*(1.0_wp + neat_clearance), 12), error)
+         else
+            call reader%complain('body', hole, 'radius', 'a hole needs a disk of smaller radius inside it', error)
+         end if
       else if (touches_everywhere(scene)) then
          call reader%complain('body', 2, 'shape', 'two half-planes touch everywhere; one body must have another shape', error)
       end if

@@ -51,9 +51,13 @@ contains
       do i = 1, size(keys)
          if (.not. reader%has('friction', 1, keys(i)%text)) cycle
          if (.not. has_word('law '//coefficients//' '//known, keys(i)%text)) then
-            call reader%complain('friction', 1, keys(i)%text, &
-                                 "has no effect with law='"//reader%text_value('friction', 1, 'law')// &
-                                 "'; remove it or choose another law", error)
+            if (reader%has('friction', 1, 'law')) then
+               call reader%complain('friction', 1, keys(i)%text, &
+                                    "has no effect with law='"//reader%text_value('friction', 1, 'law')// &
+                                    "'; remove it or choose another law", error)
+            else
+               call reader%complain('friction', 1, keys(i)%text, "needs a law; add law='"//first_law_with(keys(i)%text)//"'", error)
+            end if
          else if (has_word(coefficients, keys(i)%text) .and. reader%has('friction', 1, 'mu_file')) then
             call reader%complain('friction', 1, keys(i)%text, 'mu_file is also given; give only one of them', error)
          end if
@@ -66,6 +70,21 @@ contains
          if (allocated(error)) return
       end do
    end subroutine check_friction_keys
+
+   !> The first law that has a key.
+   function first_law_with(key) result(law)
+      character(*), intent(in) :: key
+      character(:), allocatable :: law, coefficients, needed, known
+      type(string_type), allocatable :: laws(:)
+      integer :: i
+
+      laws = list_of_words(friction_law_names)
+      do i = 1, size(laws)
+         law = laws(i)%text
+         call find_keys_of_law(law, coefficients, needed, known)
+         if (has_word(coefficients//' '//known, key)) return
+      end do
+   end function first_law_with
 
    !> Keys of a law, separated by blanks: its coefficients, other needed keys, and all keys except its coefficients.
    subroutine find_keys_of_law(name, coefficients, needed, known)
@@ -167,7 +186,7 @@ contains
       scene%wear%tolerance = reader%real_value('wear', 1, 'tolerance')
       scene%wear%block = reader%integer_value('wear', 1, 'block')
       if (.not. scene%friction%acts()) then
-         call reader%complain('wear', 1, 'coefficient', 'needs a &friction law with a coefficient above 0', error)
+         call reader%complain('wear', 1, 'coefficient', needs_friction, error)
       else if (scene%wear%law == wear_archard .and. .not. scene%friction%is_linear()) then
          call reader%complain('wear', 1, 'law', "'archard' needs friction with law='coulomb' or 'static_kinetic', whose work "// &
                               "gives the product of pressure and slip; use law='work'", error)
@@ -230,8 +249,12 @@ contains
          if (.not. reader%has('step', i, 'tangential_force')) cycle
          if (.not. abs(reader%real_value('step', i, 'tangential_force')) > 0.0_wp) cycle
          if (law .and. reader%logical_value('step', i, 'friction')) cycle
-         call reader%complain('step', i, 'tangential_force', 'must be 0 in a step without friction (or where every '// &
-                              'coefficient is 0)', error)
+         if (reader%text_value('friction', 1, 'law') == 'none') then
+            call reader%complain('step', i, 'tangential_force', needs_friction, error)
+         else
+            call reader%complain('step', i, 'tangential_force', 'must be 0 in a step without friction (or where every '// &
+                                 'coefficient is 0)', error)
+         end if
          return
       end do
    end subroutine check_friction_of_steps

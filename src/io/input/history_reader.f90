@@ -183,7 +183,7 @@ contains
       if (step%control(motion_shift) /= control_keep) then
          call complain(reader, table, ratio, 'tangential_force or shift is also given; prescribe only one of them', error)
       else if (.not. scene%friction%acts()) then
-         call complain(reader, table, ratio, 'needs a &friction law with a coefficient above 0', error)
+         call complain(reader, table, ratio, needs_friction, error)
       else if (.not. is_known) then
          call complain(reader, table, ratio, 'needs a normal_force, here or in an earlier step without cycles', error)
       end if

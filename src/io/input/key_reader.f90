@@ -11,10 +11,12 @@ module mfv_key_reader
    use mfv_strings, only: has_word, list_of_words, lower_case, shortened, string_type, to_text
    implicit none
    private
-   public :: reader_type, check_groups, check_entries, count_groups, line_of, find_file, fail, decimal_point
+   public :: reader_type, check_groups, check_entries, count_groups, line_of, find_file, fail, decimal_point, needs_friction
 
    !> Advice at the end of a message about 50,5, which is two values.
    character(*), parameter :: decimal_point = '; write decimals with a point'
+   !> Fault of a value that acts through friction only.
+   character(*), parameter :: needs_friction = 'needs a &friction law with a coefficient above 0'
    character(*), parameter :: words_for_true = ' .true. t true .t. ', words_for_false = ' .false. f false .f. '
 
    !> A parsed text with its catalogue of keys.
@@ -154,7 +156,11 @@ contains
       if (right) return
       if (size(entry%values) > 1 .and. .not. key%is_list .and. all(entry%is_quoted .eqv. is_text)) then
          why = 'one value expected, found '//to_text(size(entry%values))
-         if (key%kind == kind_real .and. has_decimal_comma(entry)) why = why//decimal_point
+         if (key%kind == kind_real .and. has_decimal_comma(entry)) then
+            why = why//decimal_point
+         else if (any(key%kind == [kind_integer, kind_real]) .and. starts_with_letter(entry%values(2)%text)) then
+            why = why//'; write numbers without units'
+         end if
          return
       end if
       call describe_allowed(key, why)
@@ -170,8 +176,15 @@ contains
 
       has_decimal_comma = size(entry%values) == 2 .and. .not. any(entry%is_quoted)
       if (has_decimal_comma) has_decimal_comma = verify(entry%values(1)%text, '+-'//digits) == 0 .and. &
-                                                 verify(entry%values(2)%text, digits) == 0
+                                                 verify(entry%values(2)%text, digits//'eEdD+-') == 0
    end function has_decimal_comma
+
+   !> Whether a text starts with a letter or a per cent sign, as a unit does.
+   elemental logical function starts_with_letter(text)
+      character(*), intent(in) :: text
+
+      starts_with_letter = scan(text(:min(1, len(text))), 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ%') == 1
+   end function starts_with_letter
 
    !> Path of the file that a key names, relative to the case; `in_memory`: the name of data in memory.
    subroutine find_file(reader, group, number, name, path, in_memory)

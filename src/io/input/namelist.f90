@@ -56,12 +56,13 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(cursor_type) :: cursor
       character(:), allocatable :: why
-      integer :: n
+      integer :: ended_in_line, n
 
       cursor%text = text
       cursor%source = source
       allocate (groups(0))
       n = 0
+      ended_in_line = 0
       call find_fault_of_text(text, cursor%line, why)
       if (why /= '') then
          call complain(cursor, why, error)
@@ -73,7 +74,10 @@ contains
          call skip_blanks(cursor)
          if (cursor%at > len(cursor%text)) exit
          if (next(cursor) /= '&') then
-            call complain(cursor, "'"//rest_of_line(cursor)//"' is outside a group; a group begins with &name", error)
+            why = "'"//rest_of_line(cursor)//"' is outside a group; a group begins with &name"
+            if (ended_in_line == cursor%line) why = why//', and the / before it ended &'//groups(n)%name// &
+                                                    ' (write numbers without units, texts with / between quotes)'
+            call complain(cursor, why, error)
             return
          end if
          if (n == most_groups) then
@@ -84,6 +88,7 @@ contains
          n = n + 1
          call read_group(cursor, groups(n), error)
          if (allocated(error)) return
+         ended_in_line = cursor%line
       end do
       call resize_groups(groups, n)
    end subroutine parse_namelists

@@ -63,7 +63,7 @@ contains
          call reader%complain('step', number, 'force_ratio', 'tangential_force or shift is also given; prescribe only one '// &
                               'of them', error)
       else if (.not. scene%friction%acts()) then
-         call reader%complain('step', number, 'force_ratio', "needs a &friction law with a coefficient above 0", error)
+         call reader%complain('step', number, 'force_ratio', needs_friction, error)
       else if (.not. reader%logical_value('step', number, 'friction')) then
          call reader%complain('step', number, 'force_ratio', 'has no effect in a step without friction; remove it', error)
       else if (last == 0) then

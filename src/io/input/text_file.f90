@@ -97,6 +97,10 @@ contains
       why = ''
       line = 1
       i = 1
+      if (index(text, char(137)//'HDF') == 1) then
+         why = 'an HDF5 file, such as a result; a text is needed'
+         return
+      end if
       do while (i <= len(text))
          code = ichar(text(i:i))
          length = 1

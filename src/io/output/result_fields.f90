@@ -16,7 +16,7 @@ module mfv_result_fields
    use mfv_load_extremes, only: candidate_tension, extreme_type
    use mfv_material, only: plane_names
    use mfv_motions, only: motions, motion_count => user_motions, motion_approach, motion_shift, motion_rotation, bulk_motions
-   use mfv_node_status, only: event_names, holds, in_contact, node_status_names
+   use mfv_node_status, only: event_names, in_contact, node_status_names
    use mfv_observables, only: observable_count, observable_place, observables, observables_of
    use mfv_scene, only: algorithm_names, stepping_leap, stepping_names
    use mfv_simulation, only: history_none, mark_cycle_start, mark_loading, mark_return, mark_reversal, &
@@ -69,7 +69,7 @@ module mfv_result_fields
    character(*), parameter :: dissipation_meaning = 'energy dissipated so far per unit thickness (with wear: by all cycles)'
    character(*), parameter :: contact_nodes_meaning = 'nodes in contact'
    character(*), parameter :: stick_nodes_meaning = 'stuck nodes'
-   character(*), parameter :: nan_of_several = '; NaN with several patches'
+   character(*), parameter :: between_nodes = ', x, between nodes'
    character(*), parameter :: linear_solves_meaning = 'linear solves so far'
 
 contains
@@ -356,7 +356,7 @@ contains
       if (simulation%contact%model%scene%wear%acts()) &
          call list%add('wear_depth', state%worn, along_nodes, 'length', 'depth worn off both surfaces together')
       call find_edges_at_nodes(simulation%contact%model, state, contact_edge, stick_edge)
-      call list%add('contact_edge', contact_edge, along_nodes, 'length', 'edges of contact'//where_from)
+      call list%add('contact_edge', contact_edge, along_nodes, 'length', 'edges of contact'//between_nodes)
       if (simulation%contact%model%tangential) call list%add('stick_edge', stick_edge, along_nodes, 'length', 'edges of stick'// &
                                                              where_from)
    end subroutine add_state
@@ -441,7 +441,6 @@ contains
       type(contact_state_type), intent(in) :: state
       logical, parameter :: usual(motion_count) = .not. motions(:motion_count)%optional
       type(zone_edges_type) :: edges
-      real(wp) :: half_width
 
       call find_zone_edges(simulation%contact%model, state, edges)
       associate (f => state%fields)
@@ -453,13 +452,10 @@ contains
          call list%add('stick_nodes', state%stick_nodes(), stick_nodes_meaning)
          call list%add('slip_nodes', state%slip_nodes(), 'slipping nodes')
          call list%add('patches', [edges%patches], along_nothing, 'contact patches, with open nodes between them')
-         associate (model => simulation%contact%model)
-            half_width = 0.5_wp*model%interval()*model%intervals(in_contact(state%status))
-            if (edges%patches > 1) half_width = ieee_value(1.0_wp, ieee_quiet_nan)
-            call list%add('contact_half_width', half_width, 'length', 'half the length of all intervals in contact'//nan_of_several)
-            call list%add('stick_ratio', model%intervals(holds(state%status))/max(model%intervals(in_contact(state%status)), &
-                                         tiny(1.0_wp)), '1', 'length of the intervals of stuck nodes over that of nodes in contact')
-         end associate
+         call list%add('contact_half_width', edges%half_width(), 'length', 'half the length of the contact along the surface, '// &
+                       'from edges between nodes; NaN with several patches')
+        call list%add('stick_ratio', edges%stick_ratio(), '1', 'length of the stick zones over that of the contact, from edges '// &
+                       'between nodes')
       end associate
       call add_edges(list, simulation, edges)
    end subroutine add_loads
@@ -469,21 +465,17 @@ contains
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
       type(zone_edges_type), intent(in) :: edges
-      character(*), parameter :: where_from = ', between nodes, along the surface from the origin'
 
       if (.not. edges%contact) return
-      call list%add('contact_left', edges%contact_left, 'length', 'left edge of the contact'//where_from)
-      call list%add('contact_right', edges%contact_right, 'length', 'right edge of the contact'//where_from)
-      call list%add('contact_length', edges%contact_length, 'length', 'length of the contact, of all patches together, from '// &
-                    'edges between nodes')
-      call list%add('edge_half_width', edges%half_width(), 'length', 'half the length of the contact from its edges between '// &
-                    'nodes'//nan_of_several)
-      if (.not. simulation%contact%model%tangential) return
-      if (edges%stick) then
-         call list%add('stick_left', edges%stick_left, 'length', 'left edge of the stick zones'//where_from)
-         call list%add('stick_right', edges%stick_right, 'length', 'right edge of the stick zones'//where_from)
-      end if
-      call list%add('edge_stick_ratio', edges%stick_ratio(), '1', 'stick zones over contact length, from edges between nodes')
+      associate (scene => simulation%contact%model%scene)
+         call list%add('contact_left', scene%x_of_arc(edges%contact_left), 'length', 'left edge of the contact'//between_nodes)
+         call list%add('contact_right', scene%x_of_arc(edges%contact_right), 'length', 'right edge of the contact'//between_nodes)
+         call list%add('contact_length', edges%contact_length, 'length', 'length of the contact along the surface, of all '// &
+                       'patches together, from edges between nodes')
+         if (.not. edges%stick) return
+         call list%add('stick_left', scene%x_of_arc(edges%stick_left), 'length', 'left edge of the stick zones'//between_nodes)
+         call list%add('stick_right', scene%x_of_arc(edges%stick_right), 'length', 'right edge of the stick zones'//between_nodes)
+      end associate
    end subroutine add_edges
 
    !> Observables of the load history, where defined.
@@ -512,7 +504,6 @@ contains
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
       integer, parameter :: along = along_patches
-      character(*), parameter :: where_from = ', between nodes, along the surface from the origin'
       type(patch_type), allocatable :: patches(:)
       integer :: i
 
@@ -521,16 +512,16 @@ contains
       call list%add('patch', [(i, i=1, size(patches))], along, 'number of the contact patch, from left to right')
       call list%add('first_node', patches%first, along, 'number, from 1, of its first node')
       call list%add('last_node', patches%last, along, 'number, from 1, of its last node')
-      call list%add('contact_left', patches%left, along, 'length', 'left edge'//where_from)
-      call list%add('contact_right', patches%right, along, 'length', 'right edge'//where_from)
+   call list%add('contact_left', simulation%contact%model%scene%x_of_arc(patches%left), along, 'length', 'left edge'//between_nodes)
+call list%add('contact_right', simulation%contact%model%scene%x_of_arc(patches%right), along, 'length', 'right edge'//between_nodes)
       call list%add('contact_length', patches%length(), along, 'length', 'length, from its edges between nodes')
       call add_patch_loads(list, simulation, patches)
       if (.not. simulation%contact%model%tangential) return
       call list%add('stick_zones', [(size(patches(i)%stick), i=1, size(patches))], along, 'number of stick zones in the patch')
       call list%add('stick_left', [(outermost(patches(i), .false.), i=1, size(patches))], along, 'length', 'left edge of its '// &
-                    'first stick zone'//where_from//'; NaN without stick zones')
+                    'first stick zone'//between_nodes//'; NaN without stick zones')
       call list%add('stick_right', [(outermost(patches(i), .true.), i=1, size(patches))], along, 'length', 'right edge of its '// &
-                    'last stick zone'//where_from//'; NaN without stick zones')
+                    'last stick zone'//between_nodes//'; NaN without stick zones')
       call list%add('stick_length', [(sum(patches(i)%stick%length()), i=1, size(patches))], along, 'length', 'length of all '// &
                     'its stick zones, from edges between nodes')
 
@@ -543,8 +534,8 @@ contains
 
          edge = ieee_value(1.0_wp, ieee_quiet_nan)
          if (size(patch%stick) == 0) return
-         edge = patch%stick(1)%left
-         if (right) edge = patch%stick(size(patch%stick))%right
+         edge = simulation%contact%model%scene%x_of_arc(patch%stick(1)%left)
+         if (right) edge = simulation%contact%model%scene%x_of_arc(patch%stick(size(patch%stick))%right)
       end function outermost
    end subroutine add_patches
 
@@ -687,6 +678,9 @@ contains
       type(contact_state_type), intent(in) :: state
 
       call add_loads(list, simulation, state)
+      if (simulation%contact%model%moves(motion_rotation) .and. simulation%contact%state%contact_nodes() > 0) &
+         call list%add('creepage', simulation%contact%rolling%creepage(), '1', 'rolling: sliding of the upper body over the '// &
+                       'lower per rolled distance, both to the right')
       call list%add('steps_done', simulation%steps_done, 'steps reached')
       call list%add('events', simulation%contact%events, 'loads at which nodes changed their status')
       call list%add('leaps', simulation%contact%certificate%large_increments, &

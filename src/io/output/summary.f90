@@ -38,12 +38,10 @@ contains
          call add_line(text, 'outcome', status_outcome(simulation%outcome)//': '//simulation%message)
          call group_fields(case, simulation, 'observables', seen, observed)
          call add_extremes(text, seen, simulation)
-         call add_contact(text, fields)
+         call add_contact(text, fields, model%scene%mesh%radial)
          call add_line(text, 'nodes', to_text(model%nodes())//', in contact '//amount(fields, 'contact_nodes')// &
                        ', stuck '//amount(fields, 'stick_nodes')//', slipping '//amount(fields, 'slip_nodes'))
-         words = ''
-         if (field_named(fields, 'edge_stick_ratio') > 0) words = amount(fields, 'edge_stick_ratio')//' between nodes, '
-         if (model%tangential) call add_line(text, 'stick ratio', words//amount(fields, 'stick_ratio')//' in whole intervals')
+         if (model%tangential) call add_line(text, 'stick ratio', amount(fields, 'stick_ratio'))
          call add_line(text, 'normal force', amount(fields, 'normal_force')//', approach '//amount(fields, 'approach'))
          if (model%tangential) then
             call add_line(text, 'tangential force', amount(fields, 'tangential_force')//', shift '//amount(fields, 'shift'))
@@ -84,20 +82,26 @@ contains
       end associate
    end subroutine summarize
 
-   !> The size of the contact: the half-width of one patch, or the total length of several patches and their number.
-   subroutine add_contact(text, fields)
+   !> The size of the contact: the half-width of one patch, or the total length of several patches and their number. `radial`: the
+   !> surface is curved; lengths are along it, positions are x.
+   subroutine add_contact(text, fields, radial)
       character(:), allocatable, intent(inout) :: text
       type(field_type), intent(in) :: fields(:)
+      logical, intent(in) :: radial
+      character(:), allocatable :: span
 
+      span = ''
       associate (patches => fields(field_named(fields, 'patches'))%whole(1))
+         if (patches > 0) span = ' from x = '//amount(fields, 'contact_left')//' to '//amount(fields, 'contact_right')
          if (patches > 1) then
-            call add_line(text, 'contact length', amount(fields, 'contact_length')//' between nodes, in '//to_text(patches)// &
-                          ' patches from '//amount(fields, 'contact_left')//' to '//amount(fields, 'contact_right'))
-         else if (patches == 1) then
-            call add_line(text, 'contact half-width', amount(fields, 'edge_half_width')//' between nodes, '// &
-                          amount(fields, 'contact_half_width')//' in whole intervals')
+            call add_line(text, 'contact length', amount(fields, 'contact_length')//' in '//to_text(patches)//' patches'//span)
          else
-            call add_line(text, 'contact half-width', amount(fields, 'contact_half_width')//' in whole intervals')
+            if (radial .and. patches == 1) then
+               span = ' along the surface,'//span
+            else
+               span = ''
+            end if
+            call add_line(text, 'contact half-width', amount(fields, 'contact_half_width')//span)
          end if
       end associate
    end subroutine add_contact
