@@ -470,7 +470,9 @@ def test_a_misspelled_command_has_a_proposal(capsys: pytest.CaptureFixture[str])
         assert caught.value.code == 2 and f"unknown command '{word}'; {proposal}" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("command", ["new", "plot", "info", "compare", "animate", "report", "study", "identify", "profile", "fatigue"])
+@pytest.mark.parametrize(
+    "command", ["new", "plot", "info", "compare", "animate", "report", "study", "identify", "profile", "fatigue"]
+)
 def test_every_command_teaches(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as caught:
         main([command, "--help"])
@@ -577,7 +579,10 @@ def test_new_takes_the_name_of_a_file(tmp_path: Path, monkeypatch: pytest.Monkey
 @pytest.mark.parametrize(
     ("line", "expected"),
     [
-        ("mfv ", {"new", "run", "plot", "info", "stress", "compare", "animate", "report", "study", "identify", "profile", "fatigue"}),
+        (
+            "mfv ",
+            {"new", "run", "plot", "info", "stress", "compare", "animate", "report", "study", "identify", "profile", "fatigue"},
+        ),
         ("mfv run s", {"s.nml"}),
         ("mfv run --res", {"--resume"}),
         ("mfv stress --b", {"--body"}),

@@ -23,11 +23,11 @@ SurfaceTopography. Lengths are converted to one unit, and heights, which instrum
 EXAMPLES = """\
 examples:
   mfv profile scan.x3p -o scan.txt
-                                            the middle line of a map, in mm
+                                      the middle line of a map, in mm
   mfv profile scan.opd --line 120 --along y --unit um
-                                            another line, in micrometres
+                                      another line, in micrometres
   mfv profile trace.csv -o scan.txt --file-unit um --lambda-s 0.0025
-                                            a text without a unit; without waves shorter than 2.5 micrometres
+                                      a text without a unit; without waves shorter than 2.5 micrometres
 """
 
 
