@@ -14,6 +14,7 @@ import mfv
 from mfv import Axis, Body, Friction, Mesh, Scene, Step, errors, identify
 from mfv.commands import main
 from mfv.identify import Loop
+from mfv.identify.path import path_of
 
 P, MU, E, NU, RADIUS = 100.0, 0.45, 70000.0, 0.3, 10.0
 TRUTH = {"friction%mu": MU, "rig_stiffness": 1.0e5}
@@ -156,7 +157,7 @@ def test_levels_of_a_noisy_driven_column_are_unbiased(shape: str) -> None:
     exact = np.sin(2.0 * np.pi * phase) if shape == "sine" else 2.0 / np.pi * np.arcsin(np.sin(2.0 * np.pi * phase))
     for seed in range(60):
         noisy = exact + 0.015 * np.random.default_rng(seed).standard_normal(exact.size)
-        path = identify._path_of(Loop(noisy, noisy, P, force_noise=0.015, shift_noise=0.015))
+        path = path_of(Loop(noisy, noisy, P, force_noise=0.015, shift_noise=0.015))
         assert path.levels.size == 2 and np.bincount(path.branch).tolist() == pytest.approx([100, 101], abs=12)
         errors_found.append(np.abs(path.levels) - 1.0)
         claimed.append(path.errors)

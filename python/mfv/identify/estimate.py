@@ -1,0 +1,130 @@
+"""Parameters with their uncertainty."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._packages import needed
+from .loop import Loop
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+
+
+@dataclass(repr=False)
+class Estimate:
+    """Parameters with the covariance that measured or planned loops leave.
+
+    `names`: of the parameters; `values` by name; `covariance`: in this order and in the units of the parameters;
+    `standard_errors` by name, infinite where the loops have no information; `warnings`: sentences.
+    """
+
+    names: list[str]
+    values: dict[str, float]
+    covariance: Array
+    degrees_of_freedom: int
+    warnings: list[str]
+
+    @property
+    def standard_errors(self) -> dict[str, float]:
+        return dict(zip(self.names, np.sqrt(np.diag(self.covariance)).tolist()))
+
+    @property
+    def correlation(self) -> Array:
+        """Correlations of the parameters; NaN where a standard error is infinite."""
+        errors = np.sqrt(np.diag(self.covariance))
+        with np.errstate(invalid="ignore"):
+            return np.asarray(self.covariance / np.outer(errors, errors))
+
+    def interval(self, name: str, level: float = 0.95) -> tuple[float, float]:
+        """The confidence interval of a parameter, symmetric in its logarithm (Student's t)."""
+        quantile = needed("scipy.special").stdtrit(self.degrees_of_freedom, 0.5 + 0.5 * level)
+        relative = self.standard_errors[name] / self.values[name]
+        with np.errstate(over="ignore"):
+            factor = float(np.exp(quantile * relative))
+        return self.values[name] / factor, self.values[name] * factor
+
+    def __repr__(self) -> str:
+        lines = [f"{'parameter':32} {'value':>11} {'std. error':>11}   95 % interval"]
+        for name in self.names:
+            low, high = self.interval(name)
+            lines.append(f"{name:32} {self.values[name]:11.5g} {self.standard_errors[name]:11.2g}   {low:.4g} to {high:.4g}")
+        for i, name in enumerate(self.names):
+            lines += [f"correlation of {name} and {other}: {self.correlation[i, j]:.3f}" for j, other in enumerate(self.names[:i])]
+        return "\n".join([*lines, *(f"warning: {warning}" for warning in self.warnings)])
+
+
+@dataclass(repr=False)
+class Fit(Estimate):
+    """The estimate from measured loops. `loops`: with their noise; `residuals`: of every loop, distances from the model in standard
+    deviations, positive where the shift is larger; `curves`: the model, an array (2, n) of tangential force and shift for every
+    branch of every loop; `chi_squared`: reduced by the degrees of freedom, 1 for a right model and right noise."""
+
+    loops: list[Loop] = field(default_factory=list)
+    residuals: list[Array] = field(default_factory=list)
+    curves: list[list[Array]] = field(default_factory=list)
+    chi_squared: float = math.nan
+    _problem: Any = None
+    _x: Any = None
+
+    def sample(self, steps: int = 1000, *, walkers: int | None = None, spread: float = 10.0, seed: int = 0) -> Array:
+        """Posterior samples, an array (samples, parameters) in the order of `names`; needs emcee.
+
+        The prior is uniform in the logarithm of every parameter, up to the factor `spread` above and below the estimate. The first
+        fifth of the `steps` of every walker is discarded. A step costs a simulation of all loops for every walker (by default two
+        more than twice the unknowns). Raises ModuleNotFoundError.
+        """
+        emcee = needed("emcee")
+        problem, centre = self._problem, self._x
+        count = len(self.names)
+        limit = math.log(spread)
+        walkers = 2 * centre.size + 2 if walkers is None else walkers
+        scale = 1.0 if problem.noise_is_given else self.chi_squared
+
+        def log_posterior(x: Array) -> float:
+            if np.max(np.abs(x[:count] - centre[:count])) > limit or not problem.reaches(x):
+                return -math.inf
+            residuals = problem.residuals(x)
+            return -0.5 * float(residuals @ residuals) / scale
+
+        random = np.random.default_rng(seed)
+        width = np.minimum(0.5 * problem.standard_errors(centre), 0.2)
+        start = centre + width * random.standard_normal((walkers, centre.size))
+        sampler = emcee.EnsembleSampler(walkers, centre.size, log_posterior)
+        sampler.random_state = np.random.RandomState(seed).get_state()
+        sampler.run_mcmc(start, steps)
+        return np.asarray(np.exp(sampler.get_chain(discard=steps // 5, flat=True)[:, :count]))
+
+    def figure(self) -> Figure:
+        """A picture with a column for every loop: measured rows and model, the same without the line of the stick stiffness, which
+        hides a thin loop, and the residuals."""
+        from matplotlib import pyplot
+
+        figure, axes = pyplot.subplots(
+            3, len(self.loops), figsize=(4.2 * len(self.loops), 8.4), squeeze=False, layout="constrained"
+        )
+        for (above, middle, below), loop, residuals, branches in zip(axes.T, self.loops, self.residuals, self.curves):
+            force, shift = np.concatenate(branches, axis=1)
+            steps = np.diff(branches[-1], axis=1)
+            slope = next(step[1] / step[0] for step in steps.T if abs(step[0]) > 1e-6 * np.ptp(force))  # sticks after the reversal
+            for ax, line in ((above, 0.0), (middle, slope)):
+                ax.plot(loop.shift - line * loop.tangential_force, loop.tangential_force, ".", ms=3, label="measured")
+                ax.plot(shift - line * force, force, "-", lw=1, label="model")
+            below.plot(residuals, ".", ms=3)
+            below.axhline(0.0, color="black", lw=0.6)
+            above.set(title=loop.name, xlabel="shift U", ylabel="tangential force Q")
+            middle.set(xlabel=f"U - {slope:.3g} Q", ylabel="tangential force Q")
+            below.set(xlabel="row", ylabel="residual over standard deviation")
+            above.legend(frameon=False)
+            for ax in (above, middle):
+                ax.locator_params(nbins=5)
+                ax.ticklabel_format(axis="x", scilimits=(-2, 3))
+        figure.suptitle("   ".join(f"{name} = {self.values[name]:.4g} ± {self.standard_errors[name]:.2g}" for name in self.names))
+        return figure

@@ -1,0 +1,365 @@
+"""Residuals of loops as a function of the unknowns."""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._datum import datums_of, with_datums
+from ..errors import MfvError, input_error
+from ..scene import Output, Scene, Step
+from ..studies.axes import Axis
+from .estimate import Estimate
+from .loop import Loop
+from .path import path_of
+
+if TYPE_CHECKING:
+    from ..case import Case
+
+Array = NDArray[np.float64]
+
+#: The parameter that is no key of the scene: stiffness of the rig, in series with the contact [force/length^2].
+RIG_STIFFNESS = "rig_stiffness"
+
+#: Annotations of keys whose values are real numbers.
+_REAL = ("float", "float | None", "Coefficient | None")
+
+#: Half the step of the central differences, in the logarithm of a parameter (docs/identify.md has the measurements).
+_DIFFERENCE = 0.05
+
+#: A parameter whose logarithm has a larger standard error than this is reported as not determined; from about here on intervals are
+#: too narrow (docs/verification.md).
+_UNDETERMINED = 0.15
+
+#: Two parameters with a larger correlation than this are reported as not separated.
+_CORRELATED = 0.98
+
+#: Largest factor between a parameter and its start value.
+_FARTHEST = 1.0e4
+
+#: Residual of rows that the model cannot reach since it slides, in ranges of the column.
+_UNREACHED = 10.0
+
+
+class Problem:
+    """Residuals of loops as a function of the unknowns.
+
+    These are the logarithms of the parameters, then for every loop the origin of its shift over the range of the shift, and the
+    levels of a noisy driven column as deviations from their estimates over their standard errors.
+    """
+
+    def __init__(self, scene: Scene, loops: list[Loop], free: Mapping[str, float | Axis], rig_stiffness: float) -> None:
+        """Raises InputError."""
+        if not free or not loops:
+            raise input_error("give at least one loop and one free parameter such as {'friction%mu': 0.5}")
+        pressed = copy.copy(scene)
+        pressed.steps = [*scene.steps, Step(normal_force=max(loop.normal_force for loop in loops))]
+        #: Default datums of wedges and power laws, which otherwise would be those of the normal force of every loop.
+        self.datums = datums_of(pressed)
+        self.scene, self.loops, self.rig_stiffness = with_datums(scene, self.datums), loops, rig_stiffness
+        self.axes = {name: value if isinstance(value, Axis) else Axis(name, [value]) for name, value in free.items()}
+        self.names = list(free)
+        self.start_values = np.array([_start(name, axis) for name, axis in self.axes.items()])
+        self.paths = [path_of(loop) for loop in loops]
+        self.ranges = [max(float(np.ptp(loop.shift)), 1e-300) for loop in loops]
+        self.noise_is_given = False
+        #: How the model ended before the last row at the last values with which it did.
+        self.early_end = ""
+        self._known: dict[tuple[Any, ...], list[Array] | None] = {}
+        place = len(self.names)
+        #: Places of the origin of the shift and of the levels of every loop among the unknowns.
+        self.places: list[tuple[int, slice]] = []
+        for path in self.paths:
+            count = path.levels.size if path.errors.any() else 0
+            self.places.append((place, slice(place + 1, place + 1 + count)))
+            place += 1 + count
+        self.count = place
+        self._scene_for(self.start_values, loops[0])
+
+    def start(self) -> Array:
+        """The unknowns at the start values; the origins of the shift from the means of rows and model."""
+        x = np.zeros(self.count)
+        x[: len(self.names)] = np.log(self.start_values)
+        for number, loop in enumerate(self.loops):
+            if loop.drive == "tangential_force" and (branches := self.curves(x, number)):
+                x[self.places[number][0]] = np.mean(loop.shift - self._interpolated(loop, branches, number)) / self.ranges[number]
+            elif loop.drive == "shift":
+                x[self.places[number][0]] = self._middle(number)
+        return x
+
+    def _middle(self, number: int) -> float:
+        """About the origin of a prescribed shift, over its range: the middle of cycles, or where the first loading begins."""
+        path, loop = self.paths[number], self.loops[number]
+        middle = 0.5 * (path.levels.max() + path.levels.min()) if path.before else loop.shift[0]
+        return float(middle) / self.ranges[number]
+
+    def residuals(self, x: Array) -> Array:
+        """All residuals: of the rows, of the levels, and of the origin of a prescribed shift.
+
+        After sliding to both sides the contact does not depend on that origin; it is known to a range of the shift.
+        """
+        parts = [self.distances(x, number) for number in range(len(self.loops))]
+        parts += [x[levels] for _, levels in self.places]
+        prescribed = [number for number, loop in enumerate(self.loops) if loop.drive == "shift"]
+        return np.concatenate([*parts, [x[self.places[number][0]] - self._middle(number) for number in prescribed]])
+
+    def jacobian(self, x: Array) -> Array:
+        """Central differences; one-sided where the other side slides."""
+        here = self.residuals(x)
+        columns = []
+        for place in range(x.size):
+            step = np.zeros(x.size)
+            step[place] = _DIFFERENCE if place < len(self.names) else 1e-3 if place in {first for first, _ in self.places} else 0.5
+            ahead, behind = ((x + sign * step if self.reaches(x + sign * step) else x) for sign in (1.0, -1.0))
+            distance = ahead[place] - behind[place]
+            columns.append((self.residuals(ahead) - self.residuals(behind)) / distance if distance > 0.0 else np.zeros(here.size))
+        return np.stack(columns, axis=1)
+
+    def reaches(self, x: Array) -> bool:
+        """Whether the model reaches all rows; it does not with gross sliding under a prescribed force."""
+        return all(self.curves(x, number) is not None for number in range(len(self.loops)))
+
+    def distances(self, x: Array, number: int) -> Array:
+        """Residuals of the rows of a loop: signed distances from the branch of the model in the plane of the columns, each over its
+        standard deviation; vertical ones if the driven column is exact."""
+        loop, path = self.loops[number], self.paths[number]
+        force_noise, shift_noise = loop.force_noise or 0.0, loop.shift_noise or 0.0
+        branches = self.curves(x, number)
+        if branches is None:
+            column, noise = (loop.shift, shift_noise) if loop.drive == "tangential_force" else (loop.tangential_force, force_noise)
+            return np.full(column.size, _UNREACHED * np.ptp(column) / noise)
+        result = np.empty(loop.shift.size)
+        for branch, points in enumerate(branches):
+            rows = path.branch == branch
+            force, shift = loop.tangential_force[rows], loop.shift[rows]
+            if loop.drive == "tangential_force" and force_noise == 0.0:
+                result[rows] = (shift - _extended(force, points[0], points[1])) / shift_noise
+            elif loop.drive == "shift" and shift_noise == 0.0:
+                result[rows] = (_extended(shift, points[1], points[0]) - force) / force_noise
+            else:
+                scales = np.array([[force_noise or 1e-9 * np.ptp(points[0])], [shift_noise or 1e-9 * np.ptp(points[1])]])
+                result[rows] = _signed_distance(np.stack([force, shift]) / scales, points / scales)
+        return result
+
+    def response(self, x: Array, number: int) -> Array | None:
+        """The column of a loop that is not driven, by the model; None if it ends early."""
+        branches = self.curves(x, number)
+        return None if branches is None else self._interpolated(self.loops[number], branches, number)
+
+    def _interpolated(self, loop: Loop, branches: list[Array], number: int) -> Array:
+        result = np.empty(loop.shift.size)
+        for branch, points in enumerate(branches):
+            rows = self.paths[number].branch == branch
+            driven, other = (0, 1) if loop.drive == "tangential_force" else (1, 0)
+            result[rows] = _extended(loop._driven[rows], points[driven], points[other])
+        return result
+
+    def curves(self, x: Array, number: int) -> list[Array] | None:
+        """The branches of a loop by the model, arrays (2, n) of tangential force and measured shift; None if it ends early."""
+        loop, path = self.loops[number], self.paths[number]
+        place, span = self.places[number]
+        origin = x[place] * self.ranges[number]
+        steps = x[: len(self.names)] - np.log(self.start_values)
+        if np.max(np.abs(steps)) > math.log(_FARTHEST):
+            self.early_end = f"{self.names[int(np.argmax(np.abs(steps)))]} is far from its start value"
+            return None
+        values = np.exp(x[: len(self.names)])
+        levels = path.levels + path.errors * x[span] if span.stop > span.start else path.levels
+        rig = values[self.names.index(RIG_STIFFNESS)] if RIG_STIFFNESS in self.names else self.rig_stiffness
+        of_scene = [value for name, value in zip(self.names, values) if name != RIG_STIFFNESS]
+        targets = levels if loop.drive == "tangential_force" else levels - origin
+        # With a prescribed force, the stiffness of the rig does not change the state of the contact.
+        key = (number, *of_scene, *targets, *([rig] if loop.drive == "shift" else []))
+        if key not in self._known:
+            if len(self._known) > 2000:
+                self._known.clear()
+            self._known[key] = self._solved(
+                values, loop, [float(targets[n]) for n in [*path.before, *path.turns]], rig, len(path.turns)
+            )
+        contact = self._known[key]
+        return None if contact is None else [np.stack([force, shift + force / rig + origin]) for force, shift in contact]
+
+    def _scene_for(self, values: Array, loop: Loop) -> Scene:
+        """The scene with values of the parameters, pressed with the force of a loop. Raises InputError."""
+        scene = copy.copy(self.scene)
+        for part in ("lower", "upper", "friction", "mesh", "solver"):
+            setattr(scene, part, copy.copy(getattr(scene, part)))
+        if scene.solver is not None:
+            scene.solver.accuracy = scene.solver.stepping = None  # rows are interpolated between events
+        scene.steps = [Step(normal_force=loop.normal_force, friction=loop.pressed_with_friction)]
+        scene.output = Output(history="events", states="none")
+        parts: dict[str, Any] = dict(scene._parts())
+        for axis, value in zip(self.axes.values(), values):
+            keys = [axis.keys] if isinstance(axis.keys, str) else list(axis.keys)
+            for key, factor in zip(keys, axis.factors or [1.0] * len(keys)):
+                group, _, name = key.partition("%")
+                if key == RIG_STIFFNESS:
+                    continue
+                if group not in parts or group.startswith("step"):
+                    raise input_error(
+                        f"'{key}': no such parameter; free are keys of bodies, friction and mesh, and {RIG_STIFFNESS}"
+                    )
+                if parts[group]._group().__annotations__.get(name, "float") not in _REAL:
+                    raise input_error(f"'{key}': cannot be estimated, since its values are not real numbers")
+                try:
+                    setattr(parts[group], name, float(value) * factor)
+                except AttributeError as error:
+                    raise input_error(f"'{key}': {error}") from None
+        return scene
+
+    def _solved(self, values: Array, loop: Loop, targets: list[float], rig: float, count: int) -> list[Array] | None:
+        """Tangential force and shift of the contact along the last `count` branches to the targets; None if it ends early."""
+        try:
+            contact = self._scene_for(values, loop).contact()
+        except MfvError as error:  # the least squares may try a value that is not permitted
+            self.early_end = f"{loop.name}: {error}"
+            return None
+        with contact:
+            contact.run()
+            for target in targets:
+                if loop.drive == "tangential_force":
+                    contact.advance(tangential_force=target)
+                else:
+                    _advance_with_rig(contact, target, rig)
+            if contact.outcome != "complete":  # it stays after an early end
+                self.early_end = f"{loop.name}: {contact.message}"
+                return None
+            step = contact["history/step"]
+            rows = np.stack([contact["history/tangential_force"], contact["history/shift"]])
+        last = int(step[-1])
+        ends = np.searchsorted(step, np.arange(last - count, last + 1), side="right")
+        return [rows[:, ends[n] - 1 : ends[n + 1]] for n in range(count)]
+
+    def standard_errors(self, x: Array) -> Array:
+        """Standard errors of all unknowns."""
+        jacobian = self.jacobian(x)
+        return np.asarray(np.sqrt(np.diag(_inverse_information(jacobian)[0])))
+
+    def estimate(self, x: Array, jacobian: Array, scale: float) -> Estimate:
+        """The estimate at the unknowns; the covariance is multiplied by a scale."""
+        covariance, lost = _inverse_information(jacobian)
+        count = len(self.names)
+        values = np.exp(x[:count])
+        relative = scale * covariance[:count, :count]
+        estimate = Estimate(
+            self.names,
+            dict(zip(self.names, values.tolist())),
+            relative * np.outer(values, values),
+            max(jacobian.shape[0] - x.size, 1),
+            [],
+        )
+        if self.datums:
+            estimate.warnings.append(
+                f"the datum of the displacements, {max(self.datums.values()):.4g}, is the default for the largest normal force of the "
+                f"scene and its loops: {RIG_STIFFNESS} is valid with it only; give datum to compare with other fits"
+            )
+        estimate.warnings += self._undetermined(estimate, np.sqrt(np.diag(relative)), lost[:count])
+        return estimate
+
+    def _undetermined(self, estimate: Estimate, relative: Array, lost: NDArray[np.bool_]) -> list[str]:
+        """Sentences about what the loops do not determine."""
+        sentences = []
+        for name, error, is_lost in zip(self.names, relative, lost):
+            if is_lost or not error <= _UNDETERMINED:
+                low, high = estimate.interval(name)
+                why = "the loops do not depend on it separately" if is_lost else f"95 % interval from {low:.3g} to {high:.3g}"
+                sentences.append(f"{name} is not determined ({why}){self._advice(name, estimate.values)}")
+        for i, name in enumerate(self.names):
+            for j, other in enumerate(self.names[:i]):
+                if abs(estimate.correlation[i, j]) > _CORRELATED:
+                    sentences.append(
+                        f"{other} and {name} are not separated (correlation {estimate.correlation[i, j]:.3f}): "
+                        "fix one of them, or add a test that changes their effect differently"
+                    )
+        return sentences
+
+    def _advice(self, name: str, values: Mapping[str, float]) -> str:
+        """What would determine a coefficient of friction."""
+        if name not in ("friction%mu", "friction%mu_static"):
+            return ""
+        ratio = max(np.max(np.abs(loop.tangential_force)) / loop.normal_force for loop in self.loops) / values[name]
+        return (
+            f": the loops reach Q/(mu P) = {ratio:.2g}; add a test with a larger force, best into gross sliding "
+            "(mfv.identify.plan predicts what it determines)"
+        )
+
+
+def _advance_with_rig(contact: Case, target: float, rig: float) -> None:
+    """Prescribe the sum of the shift and of the deformation of the rig."""
+    if math.isinf(rig):
+        contact.advance(shift=target)
+        return
+    before = contact.save()
+    first = len(contact["history/step"]) - 1
+    loads = contact.loads
+    reached = loads.shift + loads.tangential_force / rig
+    # The rig takes a part of the motion, so this goes beyond the target; between events the response is linear.
+    if contact.advance(shift=loads.shift + target - reached) != "complete":
+        return
+    shift, force = contact["history/shift"][first:], contact["history/tangential_force"][first:]
+    total = shift + force / rig
+    order = 1.0 if target > reached else -1.0
+    wanted = float(np.interp(order * target, order * total, shift))
+    contact.restore(before)
+    contact.advance(shift=wanted)
+
+
+def _extended(x: Array, points: Array, values: Array) -> Array:
+    """Linear interpolation between points in either order, continued beyond the ends."""
+    if points[0] > points[-1]:
+        points, values = points[::-1], values[::-1]
+    distinct = np.concatenate([[True], np.diff(points) > 1e-14 * np.ptp(points)])
+    points, values = points[distinct], values[distinct]
+    segment = np.clip(np.searchsorted(points, x) - 1, 0, points.size - 2)
+    slope = np.diff(values) / np.diff(points)
+    return np.asarray(values[segment] + slope[segment] * (x - points[segment]))
+
+
+def _signed_distance(rows: Array, points: Array) -> Array:
+    """Distance of rows (2, n) from a line through points (2, m) in a plane, its ends continued.
+
+    Positive where the second coordinate of the rows is larger, for an increasing line.
+    """
+    step = np.diff(points, axis=1)
+    length = np.hypot(step[0], step[1])
+    kept = length > 1e-12 * length.max()
+    origin, step, length = points[:, :-1][:, kept], step[:, kept], length[kept]
+    along = step / length
+    offset = rows[:, :, None] - origin[:, None, :]
+    position = np.einsum("irk,ik->rk", offset, along)
+    low = np.where(np.arange(length.size) == 0, -np.inf, 0.0)
+    high = np.where(np.arange(length.size) == length.size - 1, np.inf, length)
+    foot = np.clip(position, low, high)
+    gap = offset - foot * along[:, None, :]
+    nearest = np.argmin(np.einsum("irk,irk->rk", gap, gap), axis=1)
+    row = np.arange(rows.shape[1])
+    chosen = gap[:, row, nearest]
+    direction = along[:, nearest] * np.where(along[0, nearest] + along[1, nearest] < 0.0, -1.0, 1.0)
+    side = direction[0] * chosen[1] - direction[1] * chosen[0]
+    return np.asarray(np.sign(side) * np.hypot(chosen[0], chosen[1]))
+
+
+def _inverse_information(jacobian: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """The inverse of the information matrix, and which unknowns it does not determine; their variances are infinite."""
+    norms = np.linalg.norm(jacobian, axis=0)
+    scale = np.where(norms > 0.0, norms, 1.0)
+    _, singular, directions = np.linalg.svd(jacobian / scale, full_matrices=False)
+    is_null = singular < 1e-7 * singular[0]
+    lost = (norms == 0.0) | np.any(np.abs(directions[is_null]) > 1e-3, axis=0)
+    inverse = 1.0 / np.where(is_null, np.inf, singular)
+    covariance = (directions.T * inverse**2) @ directions / np.outer(scale, scale)
+    covariance[lost, lost] = np.inf
+    return covariance, lost
+
+
+def _start(name: str, axis: Axis) -> float:
+    """The start value of a parameter. Raises InputError."""
+    values = list(axis.values)
+    if len(values) != 1 or isinstance(values[0], bool) or not isinstance(values[0], (int, float)) or not 0.0 < values[0] < math.inf:
+        raise input_error(f"'{name}': needs one positive start value, not {values if len(values) != 1 else values[0]!r}")
+    return float(values[0])
