@@ -9,7 +9,8 @@ from __future__ import annotations
 from .estimate import Estimate, Fit
 from .fitting import fit, plan, simulate
 from .loop import Loop
+from .priors import Priors, RigError
 from .problem import RIG_STIFFNESS
 from .reading import loops_of, read
 
-__all__ = ["RIG_STIFFNESS", "Estimate", "Fit", "Loop", "fit", "loops_of", "plan", "read", "simulate"]
+__all__ = ["RIG_STIFFNESS", "Estimate", "Fit", "Loop", "Priors", "RigError", "fit", "loops_of", "plan", "read", "simulate"]

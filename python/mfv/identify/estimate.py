@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from .._packages import needed
 from .loop import Loop
+from .priors import RigError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -23,7 +24,9 @@ class Estimate:
     """Parameters with the covariance that measured or planned loops leave.
 
     `names`: of the parameters; `values` by name; `covariance`: in this order and in the units of the parameters;
-    `standard_errors` by name, infinite where the loops have no information; `warnings`: sentences.
+    `standard_errors` by name, infinite where the loops have no information; `warnings`: sentences; `rig_errors`: lag, drift, offset
+    and slack of every loop as far as they are unknowns; `sensitivities`: relative changes of the parameters by 0.1 degrees of lag
+    and by 0.1 % of drift if these were not unknowns: a thin loop has large ones.
     """
 
     names: list[str]
@@ -31,6 +34,8 @@ class Estimate:
     covariance: Array
     degrees_of_freedom: int
     warnings: list[str]
+    rig_errors: list[RigError] = field(default_factory=list)
+    sensitivities: dict[str, dict[str, float]] = field(default_factory=dict)
 
     @property
     def standard_errors(self) -> dict[str, float]:
@@ -58,6 +63,11 @@ class Estimate:
             lines.append(f"{name:32} {self.values[name]:11.5g} {self.standard_errors[name]:11.2g}   {low:.4g} to {high:.4g}")
         for i, name in enumerate(self.names):
             lines += [f"correlation of {name} and {other}: {self.correlation[i, j]:.3f}" for j, other in enumerate(self.names[:i])]
+        for loop in dict.fromkeys(each.loop for each in self.rig_errors):
+            lines.append(f"{loop}: " + ", ".join(str(each) for each in self.rig_errors if each.loop == loop))
+        for label, changes in self.sensitivities.items():
+            shown = ", ".join(f"{name} by {change:+.2%}" for name, change in changes.items())
+            lines.append(f"{label}, if not estimated, would change {shown}")
         return "\n".join([*lines, *(f"warning: {warning}" for warning in self.warnings)])
 
 
@@ -65,11 +75,13 @@ class Estimate:
 class Fit(Estimate):
     """The estimate from measured loops. `loops`: with their noise; `residuals`: of every loop, distances from the model in standard
     deviations, positive where the shift is larger; `curves`: the model, an array (2, n) of tangential force and shift for every
-    branch of every loop; `chi_squared`: reduced by the degrees of freedom, 1 for a right model and right noise."""
+    branch of every loop; `corrected`: the loops without the estimated errors of the rig, as the curves; `chi_squared`: reduced by
+    the degrees of freedom, 1 for a right model and right noise."""
 
     loops: list[Loop] = field(default_factory=list)
     residuals: list[Array] = field(default_factory=list)
     curves: list[list[Array]] = field(default_factory=list)
+    corrected: list[Loop] = field(default_factory=list)
     chi_squared: float = math.nan
     _problem: Any = None
     _x: Any = None
@@ -85,19 +97,22 @@ class Fit(Estimate):
         problem, centre = self._problem, self._x
         count = len(self.names)
         limit = math.log(spread)
-        walkers = 2 * centre.size + 2 if walkers is None else walkers
-        scale = 1.0 if problem.noise_is_given else self.chi_squared
+        active = problem.active
+        unknowns = int(active.sum())
+        walkers = 2 * unknowns + 2 if walkers is None else walkers
 
-        def log_posterior(x: Array) -> float:
+        def log_posterior(values: Array) -> float:
+            x = np.zeros(centre.size)
+            x[active] = values
             if np.max(np.abs(x[:count] - centre[:count])) > limit or not problem.reaches(x):
                 return -math.inf
             residuals = problem.residuals(x)
-            return -0.5 * float(residuals @ residuals) / scale
+            return -0.5 * float(residuals @ residuals)
 
         random = np.random.default_rng(seed)
         width = np.minimum(0.5 * problem.standard_errors(centre), 0.2)
-        start = centre + width * random.standard_normal((walkers, centre.size))
-        sampler = emcee.EnsembleSampler(walkers, centre.size, log_posterior)
+        start = centre[active] + width * random.standard_normal((walkers, unknowns))
+        sampler = emcee.EnsembleSampler(walkers, unknowns, log_posterior)
         sampler.random_state = np.random.RandomState(seed).get_state()
         sampler.run_mcmc(start, steps)
         return np.asarray(np.exp(sampler.get_chain(discard=steps // 5, flat=True)[:, :count]))
@@ -110,7 +125,7 @@ class Fit(Estimate):
         figure, axes = pyplot.subplots(
             3, len(self.loops), figsize=(4.2 * len(self.loops), 8.4), squeeze=False, layout="constrained"
         )
-        for (above, middle, below), loop, residuals, branches in zip(axes.T, self.loops, self.residuals, self.curves):
+        for (above, middle, below), loop, residuals, branches in zip(axes.T, self.corrected, self.residuals, self.curves):
             force, shift = np.concatenate(branches, axis=1)
             steps = np.diff(branches[-1], axis=1)
             slope = next(step[1] / step[0] for step in steps.T if abs(step[0]) > 1e-6 * np.ptp(force))  # sticks after the reversal

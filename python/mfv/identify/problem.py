@@ -5,18 +5,20 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .._datum import datums_of, with_datums
+from .._packages import needed
 from ..errors import MfvError, input_error
 from ..scene import Output, Scene, Step
 from ..studies.axes import Axis
 from .estimate import Estimate
 from .loop import Loop
-from .path import path_of
+from .path import Path
+from .priors import NAMES, Priors, RigError
 
 if TYPE_CHECKING:
     from ..case import Case
@@ -42,18 +44,44 @@ _CORRELATED = 0.98
 #: Largest factor between a parameter and its start value.
 _FARTHEST = 1.0e4
 
+#: Rows that a loop needs for its systematic errors to be unknowns.
+LEAST_ROWS = 20
+
+#: Half the steps of the central differences in the systematic errors.
+_STEPS = {"lag": 0.1, "drift": 1e-3, "offset": 0.01, "slack": 2e-3}
+
+#: The systematic errors whose effect is reported: how much of them, and its name.
+SMALL = {"lag": (0.1, "0.1 degrees of lag"), "drift": (0.001, "0.1 % of drift")}
+
 #: Residual of rows that the model cannot reach since it slides, in ranges of the column.
 _UNREACHED = 10.0
+
+
+class Places(NamedTuple):
+    """Places of the unknowns of a loop: the origin of its shift, its systematic errors in the order of NAMES, its levels."""
+
+    origin: int
+    errors: dict[str, int]
+    levels: slice
 
 
 class Problem:
     """Residuals of loops as a function of the unknowns.
 
-    These are the logarithms of the parameters, then for every loop the origin of its shift over the range of the shift, and the
-    levels of a noisy driven column as deviations from their estimates over their standard errors.
+    These are the logarithms of the parameters, then for every loop the origin of its shift over the range of the shift, its
+    systematic errors in the units of `Priors`, and the levels of a noisy driven column as deviations from their estimates over their
+    standard errors. Unknowns that are not `active` stay 0.
     """
 
-    def __init__(self, scene: Scene, loops: list[Loop], free: Mapping[str, float | Axis], rig_stiffness: float) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        loops: list[Loop],
+        paths: list[Path],
+        free: Mapping[str, float | Axis],
+        rig_stiffness: float,
+        priors: Priors,
+    ) -> None:
         """Raises InputError."""
         if not free or not loops:
             raise input_error("give at least one loop and one free parameter such as {'friction%mu': 0.5}")
@@ -65,20 +93,36 @@ class Problem:
         self.axes = {name: value if isinstance(value, Axis) else Axis(name, [value]) for name, value in free.items()}
         self.names = list(free)
         self.start_values = np.array([_start(name, axis) for name, axis in self.axes.items()])
-        self.paths = [path_of(loop) for loop in loops]
-        self.ranges = [max(float(np.ptp(loop.shift)), 1e-300) for loop in loops]
+        self.paths = paths
+        #: Ranges of the columns without spikes.
+        self.force_ranges, self.ranges = (
+            [max(float(np.ptp(column[~path.is_spike])), 1e-300) for column, path in zip(columns, paths)]
+            for columns in ([loop.tangential_force for loop in loops], [loop.shift for loop in loops])
+        )
+        self.is_used = [~path.is_spike for path in paths]
         self.noise_is_given = False
+        #: Factor of the variances of the noise.
+        self.scale = 1.0
         #: How the model ended before the last row at the last values with which it did.
         self.early_end = ""
         self._known: dict[tuple[Any, ...], list[Array] | None] = {}
         place = len(self.names)
-        #: Places of the origin of the shift and of the levels of every loop among the unknowns.
-        self.places: list[tuple[int, slice]] = []
-        for path in self.paths:
+        self.places: list[Places] = []
+        active, widths = [True] * place, [math.inf] * place
+        for loop, path in zip(loops, paths):
             count = path.levels.size if path.errors.any() else 0
-            self.places.append((place, slice(place + 1, place + 1 + count)))
-            place += 1 + count
+            errors = {name: place + 1 + number for number, name in enumerate(NAMES)}
+            first = place + 1 + len(NAMES)
+            self.places.append(Places(place, errors, slice(first, first + count)))
+            place = first + count
+            # Both directions, and enough rows: otherwise the prior would only be handed through.
+            is_determined = loop.shift.size >= LEAST_ROWS and len(path.turns) > 1
+            given = [float(getattr(priors, name)) if is_determined else 0.0 for name in NAMES]
+            active += [True, *(width > 0.0 for width in given), *[True] * count]
+            # After sliding to both sides the contact does not depend on the origin of a prescribed shift; it is known to the range.
+            widths += [1.0 if loop.drive == "shift" else math.inf, *given, *[1.0] * count]
         self.count = place
+        self.active, self.widths = np.array(active), np.array(widths)
         self._scene_for(self.start_values, loops[0])
 
     def start(self) -> Array:
@@ -86,10 +130,11 @@ class Problem:
         x = np.zeros(self.count)
         x[: len(self.names)] = np.log(self.start_values)
         for number, loop in enumerate(self.loops):
+            origin = self.places[number].origin
             if loop.drive == "tangential_force" and (branches := self.curves(x, number)):
-                x[self.places[number][0]] = np.mean(loop.shift - self._interpolated(loop, branches, number)) / self.ranges[number]
+                x[origin] = np.mean(loop.shift - self._interpolated(loop, branches, number)) / self.ranges[number]
             elif loop.drive == "shift":
-                x[self.places[number][0]] = self._middle(number)
+                x[origin] = self._middle(number)
         return x
 
     def _middle(self, number: int) -> float:
@@ -99,26 +144,64 @@ class Problem:
         return float(middle) / self.ranges[number]
 
     def residuals(self, x: Array) -> Array:
-        """All residuals: of the rows, of the levels, and of the origin of a prescribed shift.
+        """All residuals: those of the rows that are used, then the deviations of active unknowns from what is known before."""
+        parts = [self.distances(x, number)[self.is_used[number]] for number in range(len(self.loops))]
+        rows = np.concatenate(parts) / math.sqrt(self.scale)
+        return np.concatenate([rows, *self._deviations(x)])
 
-        After sliding to both sides the contact does not depend on that origin; it is known to a range of the shift.
-        """
-        parts = [self.distances(x, number) for number in range(len(self.loops))]
-        parts += [x[levels] for _, levels in self.places]
-        prescribed = [number for number, loop in enumerate(self.loops) if loop.drive == "shift"]
-        return np.concatenate([*parts, [x[self.places[number][0]] - self._middle(number) for number in prescribed]])
+    def _deviations(self, x: Array) -> list[Array]:
+        expected = np.zeros(self.count)
+        noisy = np.zeros(self.count, dtype=bool)
+        for number, (loop, places) in enumerate(zip(self.loops, self.places)):
+            expected[places.origin] = self._middle(number) if loop.drive == "shift" else 0.0
+            noisy[places.levels] = True
+        known = self.active & np.isfinite(self.widths)
+        widths = np.where(noisy, math.sqrt(self.scale), 1.0) * self.widths
+        return [(x - expected)[known] / widths[known]]
 
-    def jacobian(self, x: Array) -> Array:
-        """Central differences; one-sided where the other side slides."""
+    def jacobian(self, x: Array, places: NDArray[np.int64] | None = None) -> Array:
+        """Central differences with respect to the active unknowns, or to those at the places; one-sided where the other side slides."""
         here = self.residuals(x)
         columns = []
-        for place in range(x.size):
+        for place in np.flatnonzero(self.active) if places is None else places:
             step = np.zeros(x.size)
-            step[place] = _DIFFERENCE if place < len(self.names) else 1e-3 if place in {first for first, _ in self.places} else 0.5
+            step[place] = self._step(int(place))
             ahead, behind = ((x + sign * step if self.reaches(x + sign * step) else x) for sign in (1.0, -1.0))
             distance = ahead[place] - behind[place]
             columns.append((self.residuals(ahead) - self.residuals(behind)) / distance if distance > 0.0 else np.zeros(here.size))
         return np.stack(columns, axis=1)
+
+    def _step(self, place: int) -> float:
+        """Half the step of a central difference."""
+        if place < len(self.names):
+            return _DIFFERENCE
+        for each in self.places:
+            if place == each.origin:
+                return 1e-3
+            for name, at in each.errors.items():
+                if place == at:
+                    return _STEPS[name]
+        return 0.5
+
+    def solve(self, start: Array) -> Any:
+        """Least squares from a start; `x` and `jac` of what scipy returns are of all and of the active unknowns."""
+        x = start.copy()
+
+        def whole(active: Array) -> Array:
+            x[self.active] = active
+            return x
+
+        found = needed("scipy.optimize").least_squares(
+            lambda active: self.residuals(whole(active)),
+            start[self.active],
+            jac=lambda active: self.jacobian(whole(active)),
+            x_scale="jac",
+            xtol=1e-6,
+            ftol=1e-9,
+            max_nfev=60,
+        )
+        found.x = whole(found.x).copy()
+        return found
 
     def reaches(self, x: Array) -> bool:
         """Whether the model reaches all rows; it does not with gross sliding under a prescribed force."""
@@ -127,16 +210,17 @@ class Problem:
     def distances(self, x: Array, number: int) -> Array:
         """Residuals of the rows of a loop: signed distances from the branch of the model in the plane of the columns, each over its
         standard deviation; vertical ones if the driven column is exact."""
-        loop, path = self.loops[number], self.paths[number]
+        loop = self.loops[number]
         force_noise, shift_noise = loop.force_noise or 0.0, loop.shift_noise or 0.0
         branches = self.curves(x, number)
         if branches is None:
             column, noise = (loop.shift, shift_noise) if loop.drive == "tangential_force" else (loop.tangential_force, force_noise)
             return np.full(column.size, _UNREACHED * np.ptp(column) / noise)
         result = np.empty(loop.shift.size)
+        all_forces, all_shifts, on = self.corrected(x, number)
         for branch, points in enumerate(branches):
-            rows = path.branch == branch
-            force, shift = loop.tangential_force[rows], loop.shift[rows]
+            rows = on == branch
+            force, shift = all_forces[rows], all_shifts[rows]
             if loop.drive == "tangential_force" and force_noise == 0.0:
                 result[rows] = (shift - _extended(force, points[0], points[1])) / shift_noise
             elif loop.drive == "shift" and shift_noise == 0.0:
@@ -145,6 +229,20 @@ class Problem:
                 scales = np.array([[force_noise or 1e-9 * np.ptp(points[0])], [shift_noise or 1e-9 * np.ptp(points[1])]])
                 result[rows] = _signed_distance(np.stack([force, shift]) / scales, points / scales)
         return result
+
+    def corrected(self, x: Array, number: int) -> tuple[Array, Array, NDArray[np.int64]]:
+        """Force and shift of the rows without lag, drift and offset, and the branch of every row.
+
+        A shift that lags belongs to the force of an earlier time, and a force to the shift of a later one: the driven column is
+        displaced along its own path.
+        """
+        loop, path = self.loops[number], self.paths[number]
+        lag, drift, offset = (x[self.places[number].errors[name]] for name in ("lag", "drift", "offset"))
+        by_force = loop.drive == "tangential_force"
+        change, branch = path.displaced((-lag if by_force else lag) / 360.0)
+        force = loop.tangential_force - 0.5 * offset * self.force_ranges[number]
+        shift = loop.shift - 0.5 * drift * self.ranges[number] * path.time
+        return (force + change, shift, branch) if by_force else (force, shift + change, branch)
 
     def response(self, x: Array, number: int) -> Array | None:
         """The column of a loop that is not driven, by the model; None if it ends early."""
@@ -161,18 +259,23 @@ class Problem:
 
     def curves(self, x: Array, number: int) -> list[Array] | None:
         """The branches of a loop by the model, arrays (2, n) of tangential force and measured shift; None if it ends early."""
-        loop, path = self.loops[number], self.paths[number]
-        place, span = self.places[number]
-        origin = x[place] * self.ranges[number]
+        loop, path, places = self.loops[number], self.paths[number], self.places[number]
+        origin = x[places.origin] * self.ranges[number]
+        drift, offset, slack = (x[places.errors[name]] for name in ("drift", "offset", "slack"))
+        play = 0.5 * slack * self.ranges[number]
         steps = x[: len(self.names)] - np.log(self.start_values)
         if np.max(np.abs(steps)) > math.log(_FARTHEST):
             self.early_end = f"{self.names[int(np.argmax(np.abs(steps)))]} is far from its start value"
             return None
         values = np.exp(x[: len(self.names)])
-        levels = path.levels + path.errors * x[span] if span.stop > span.start else path.levels
+        targets = path.levels + path.errors * x[places.levels] if path.errors.any() else path.levels
         rig = values[self.names.index(RIG_STIFFNESS)] if RIG_STIFFNESS in self.names else self.rig_stiffness
         of_scene = [value for name, value in zip(self.names, values) if name != RIG_STIFFNESS]
-        targets = levels if loop.drive == "tangential_force" else levels - origin
+        if loop.drive == "tangential_force":
+            targets = targets - 0.5 * offset * self.force_ranges[number]
+        else:
+            targets = targets - origin - 0.5 * drift * self.ranges[number] * path.level_times
+            targets = targets - 0.5 * play * np.sign(path.levels - 0.5 * (path.levels.max() + path.levels.min()))
         # With a prescribed force, the stiffness of the rig does not change the state of the contact.
         key = (number, *of_scene, *targets, *([rig] if loop.drive == "shift" else []))
         if key not in self._known:
@@ -182,7 +285,10 @@ class Problem:
                 values, loop, [float(targets[n]) for n in [*path.before, *path.turns]], rig, len(path.turns)
             )
         contact = self._known[key]
-        return None if contact is None else [np.stack([force, shift + force / rig + origin]) for force, shift in contact]
+        if contact is None:
+            return None
+        rigs = [np.stack([force, shift + force / rig + origin]) for force, shift in contact]
+        return rigs if play == 0.0 else [_with_play(points, play, self.force_ranges[number]) for points in rigs]
 
     def _scene_for(self, values: Array, loop: Loop) -> Scene:
         """The scene with values of the parameters, pressed with the force of a loop. Raises InputError."""
@@ -236,22 +342,31 @@ class Problem:
         return [rows[:, ends[n] - 1 : ends[n + 1]] for n in range(count)]
 
     def standard_errors(self, x: Array) -> Array:
-        """Standard errors of all unknowns."""
+        """Standard errors of all active unknowns."""
         jacobian = self.jacobian(x)
         return np.asarray(np.sqrt(np.diag(_inverse_information(jacobian)[0])))
 
-    def estimate(self, x: Array, jacobian: Array, scale: float) -> Estimate:
-        """The estimate at the unknowns; the covariance is multiplied by a scale."""
+    def estimate(self, x: Array, jacobian: Array) -> Estimate:
+        """The estimate at the unknowns from the derivatives with respect to the active ones."""
         covariance, lost = _inverse_information(jacobian)
         count = len(self.names)
         values = np.exp(x[:count])
-        relative = scale * covariance[:count, :count]
+        relative = covariance[:count, :count]
+        spread = np.zeros(self.count)
+        spread[self.active] = np.sqrt(np.diag(covariance))
         estimate = Estimate(
             self.names,
             dict(zip(self.names, values.tolist())),
             relative * np.outer(values, values),
-            max(jacobian.shape[0] - x.size, 1),
+            max(jacobian.shape[0] - jacobian.shape[1], 1),
             [],
+            [
+                RigError(loop.name, name, float(x[place]), float(spread[place]))
+                for loop, places in zip(self.loops, self.places)
+                for name, place in places.errors.items()
+                if self.active[place]
+            ],
+            self._sensitivities(x, jacobian),
         )
         if self.datums:
             estimate.warnings.append(
@@ -260,6 +375,38 @@ class Problem:
             )
         estimate.warnings += self._undetermined(estimate, np.sqrt(np.diag(relative)), lost[:count])
         return estimate
+
+    def _sensitivities(self, x: Array, jacobian: Array) -> dict[str, dict[str, float]]:
+        """Relative changes of the parameters by a small lag and by a small drift of all loops, if neither were an unknown."""
+        rows = sum(int(used.sum()) for used in self.is_used)
+        kept = [
+            column
+            for column, place in enumerate(np.flatnonzero(self.active))
+            if not any(place in (places.errors["lag"], places.errors["drift"]) for places in self.places)
+        ]
+        # Without the rows of their priors, which are zero in the columns that are left.
+        inverse = np.linalg.pinv(jacobian[:, kept], rcond=1e-7)[: len(self.names)]
+        result = {}
+        for name, (amount, label) in SMALL.items():
+            effect = np.zeros(jacobian.shape[0])
+            for places in self.places:
+                change = self.jacobian(x, np.array([places.errors[name]]))[:, 0]
+                effect[:rows] += amount * change[:rows]
+            result[label] = dict(zip(self.names, np.expm1(inverse @ effect).tolist()))
+        return result
+
+    def score(self, x: Array, jacobian: Array, name: str, number: int) -> tuple[float, float]:
+        """A systematic error that is not an unknown, as one step of the fit would find it, and its standard error (a score test, Rao
+        1948)."""
+        place = self.places[number].errors[name]
+        rows = sum(int(used.sum()) for used in self.is_used)
+        column = self.jacobian(x, np.array([place]))[:, 0]
+        column[rows:] = 0.0
+        rest = column - jacobian @ np.linalg.lstsq(jacobian, column, rcond=1e-7)[0]
+        information = float(rest @ rest)
+        if information < 1e-9 * float(column @ column) or information == 0.0:
+            return 0.0, math.inf
+        return -float(rest @ self.residuals(x)) / information, 1.0 / math.sqrt(information)
 
     def _undetermined(self, estimate: Estimate, relative: Array, lost: NDArray[np.bool_]) -> list[str]:
         """Sentences about what the loops do not determine."""
@@ -342,6 +489,21 @@ def _signed_distance(rows: Array, points: Array) -> Array:
     direction = along[:, nearest] * np.where(along[0, nearest] + along[1, nearest] < 0.0, -1.0, 1.0)
     side = direction[0] * chosen[1] - direction[1] * chosen[0]
     return np.asarray(np.sign(side) * np.hypot(chosen[0], chosen[1]))
+
+
+def _with_play(points: Array, play: float, force_range: float) -> Array:
+    """A branch with a play in series: the shift jumps by it where the force changes its sign."""
+    force, shift = points
+    sides = np.sign(force)
+    crossing = np.flatnonzero(sides[1:] * sides[:-1] < 0.0)
+    if crossing.size == 0:
+        return np.stack([force, shift + 0.5 * play * sides])
+    at = int(crossing[0])
+    share = force[at] / (force[at] - force[at + 1])
+    zero = shift[at] + share * (shift[at + 1] - shift[at])
+    edge = 1e-9 * force_range * sides[at]
+    force = np.insert(force, at + 1, [edge, -edge])
+    return np.stack([force, np.insert(shift, at + 1, [zero, zero]) + 0.5 * play * np.sign(force)])
 
 
 def _inverse_information(jacobian: Array) -> tuple[Array, NDArray[np.bool_]]:
