@@ -13,12 +13,14 @@ from scenes import PROJECT
 import mfv
 from mfv import Axis, Body, Friction, Mesh, Scene, Step, errors, identify
 from mfv.commands import main
-from mfv.identify import Loop
+from mfv.identify import Loop, Priors
 from mfv.identify.path import path_of
 
 P, MU, E, NU, RADIUS = 100.0, 0.45, 70000.0, 0.3, 10.0
 TRUTH = {"friction%mu": MU, "rig_stiffness": 1.0e5}
 START = {"friction%mu": 0.6, "rig_stiffness": 7.0e4}
+#: A rig without systematic errors.
+NOTHING_WRONG = Priors(lag=0.0, drift=0.0, offset=0.0)
 #: dU/dQ = COMPLIANCE (constant - ln(1 - Q/(mu P))): two equal half-planes, (kappa + 1)/(4 pi G) = 2 (1 - nu^2)/(pi E) for ln(1/a).
 COMPLIANCE = 2.0 * (1.0 - NU**2) / (math.pi * E)
 
@@ -74,22 +76,35 @@ def test_loops_of_different_forces_have_one_datum() -> None:
     assert any("give datum" in warning for warning in fitted.warnings)
 
 
-def test_standard_errors_are_those_of_the_closed_form() -> None:
+@pytest.mark.parametrize("priors", [NOTHING_WRONG, Priors(lag=0.2, drift=0.01, offset=0.0)])
+def test_standard_errors_are_those_of_the_closed_form(priors: Priors) -> None:
+    """With the lag and the drift as unknowns, too: a lag of t shifts a branch by the rate of the shift times t."""
     ratio, nodes = 0.6, 201
     loop = measured(ratio, 0.015, nodes=nodes)
-    planned = identify.plan(cylinders(nodes), loop, TRUTH)
+    planned = identify.plan(cylinders(nodes), loop, TRUTH, priors=priors)
+    top, force = ratio * MU * P, loop.tangential_force
+    is_falling = np.arange(force.size) <= force.size // 2
 
     def loop_of(mu: float) -> np.ndarray:
-        top, force = ratio * MU * P, loop.tangential_force
         down, up = nonlinear((top - force) / 2.0, mu), nonlinear((top + force) / 2.0, mu)
         end = nonlinear(np.array(top), mu)
-        return np.where(np.arange(force.size) <= force.size // 2, end - 2.0 * down, 2.0 * up - end)
+        return np.where(is_falling, end - 2.0 * down, 2.0 * up - end)
 
     step = 1.0e-4
     by_mu = (loop_of(MU + step) - loop_of(MU - step)) / (2.0 * step)
     by_rig = -loop.tangential_force / TRUTH["rig_stiffness"] ** 2
-    jacobian = np.stack([by_mu, by_rig, np.ones_like(by_mu)], axis=1) / loop.shift_noise
-    covariance = np.linalg.inv(jacobian.T @ jacobian)[:2, :2]
+    cycles = np.linspace(-0.5, 0.5, force.size)
+    # The rate without that of the nonlinear part comes from the ends of the loop.
+    slope = (loop.shift[0] - loop_of(MU)[0] - (loop.shift[100] - loop_of(MU)[100])) / (2.0 * top)
+    reversed_by = 0.5 * np.where(is_falling, top - force, top + force)
+    rate = np.where(is_falling, -4.0, 4.0) * top * (slope - COMPLIANCE * np.log1p(-reversed_by / (MU * P)))
+    columns = [by_mu, by_rig, np.ones_like(by_mu)]
+    known = []
+    if priors.lag:
+        columns += [rate / 360.0, 0.5 * np.ptp(loop.shift) * cycles]
+        known = [0.0, 0.0, 0.0, priors.lag**-2, priors.drift**-2]
+    jacobian = np.stack(columns, axis=1) / loop.shift_noise
+    covariance = np.linalg.inv(jacobian.T @ jacobian + (np.diag(known) if known else 0.0))[:2, :2]
     np.testing.assert_allclose(list(planned.standard_errors.values()), np.sqrt(np.diag(covariance)), rtol=0.02)
     correlation = covariance[0, 1] / math.sqrt(covariance[0, 0] * covariance[1, 1])
     assert planned.correlation[0, 1] == pytest.approx(correlation, abs=0.02)
@@ -133,10 +148,10 @@ def test_an_amplitude_that_is_too_large_makes_friction_too_large() -> None:
     # A loop opens by COMPLIANCE (Qm^2 - Q^2)/(4 mu P). Least squares over Q with Qm' = 1.02 Qm, in place of Qm, multiply mu by
     # <(Qm'^2 - Q^2)^2>/<(Qm'^2 - Q^2)(Qm^2 - Q^2)> = 1.051.
     loop = measured(0.2, 1.0e-4, nodes=201)
-    exact = identify.fit(cylinders(201), loop, START).values["friction%mu"]
+    exact = identify.fit(cylinders(201), loop, START, priors=NOTHING_WRONG).values["friction%mu"]
     loop.tangential_force[[0, 100, 200]] *= 1.02
     loop.shift[[0, 100, 200]] *= 1.02
-    ratio = identify.fit(cylinders(201), loop, START).values["friction%mu"] / exact
+    ratio = identify.fit(cylinders(201), loop, START, priors=NOTHING_WRONG).values["friction%mu"] / exact
     assert ratio == pytest.approx(1.051, abs=0.01)
 
 
@@ -169,7 +184,7 @@ def test_noise_is_estimated_from_the_columns() -> None:
     loop = measured(0.6, 0.015, 0.015, seed=3)
     given = (loop.force_noise, loop.shift_noise)
     loop.force_noise = loop.shift_noise = None
-    found = loop._with_noise()
+    found = loop._prepared()[0]
     assert (found.force_noise, found.shift_noise) == pytest.approx(given, rel=0.2)
     fitted = identify.fit(cylinders(), loop, START)
     assert 0.7 < fitted.chi_squared < 1.4
@@ -201,7 +216,7 @@ def test_weakening_friction() -> None:
 
 def test_posterior_samples_agree_with_the_covariance() -> None:
     loop = measured(0.8, 0.015, seed=5, nodes=41)
-    fitted = identify.fit(cylinders(41), loop, START)
+    fitted = identify.fit(cylinders(41), loop, START, priors=NOTHING_WRONG)
     samples = fitted.sample(60, walkers=12)
     assert samples.shape == (48 * 12, 2)
     for values, name in zip(samples.T, fitted.names):

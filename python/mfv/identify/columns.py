@@ -64,23 +64,29 @@ def spikes_of(loop: Loop) -> tuple[NDArray[np.bool_], tuple[Array, Array]]:
     The median of five is the row itself where the column moves in one direction, however uneven the rows are.
     """
     columns = (loop.tangential_force, loop.shift)
-    found = []
-    for column, noise in zip(columns, (loop.force_noise, loop.shift_noise)):
-        if noise == 0.0 or column.size < 20:
-            found.append((np.zeros(column.size), np.zeros(column.size, dtype=bool)))
-            continue
-        near = np.lib.stride_tricks.sliding_window_view(np.pad(column, 2, mode="reflect"), 5)
-        off = column - np.median(near, axis=1)
-        increments = np.median(
-            np.abs(np.diff(np.lib.stride_tricks.sliding_window_view(np.pad(column, 4, mode="reflect"), 9))), axis=1
-        )
-        limit = np.maximum(_SPIKE * max(estimated_noise(column, loop.time), 1e-9 * float(np.ptp(column))), _INCREMENTS * increments)
-        found.append((off / np.ptp(column), np.abs(off) > limit))
-    (force_off, force_far), (shift_off, shift_far) = found
+    (force_off, force_far), (shift_off, shift_far) = (
+        far_from_neighbours(column, loop.time) if noise != 0.0 else (np.zeros(column.size), np.zeros(column.size, dtype=bool))
+        for column, noise in zip(columns, (loop.force_noise, loop.shift_noise))
+    )
     alone = np.minimum(np.abs(force_off), np.abs(shift_off)) < 0.3 * np.maximum(np.abs(force_off), np.abs(shift_off))
     is_spike = (force_far | shift_far) & (alone | (force_off * shift_off < 0.0))
-    cleaned = []
-    for column in columns:
-        near = np.lib.stride_tricks.sliding_window_view(np.pad(column, 2, mode="reflect"), 5)
-        cleaned.append(np.where(is_spike, np.median(near, axis=1), column) if is_spike.any() else column)
-    return is_spike, (cleaned[0], cleaned[1])
+    force, shift = (np.where(is_spike, _median_of_five(column), column) if is_spike.any() else column for column in columns)
+    return is_spike, (force, shift)
+
+
+def far_from_neighbours(column: Array, time: Array | None = None) -> tuple[Array, NDArray[np.bool_]]:
+    """Distances from the median of five over the range, and which of them are those of spikes; none of fewer than 20 rows."""
+    span = float(np.ptp(column))
+    if column.size < 20 or span == 0.0:
+        return np.zeros(column.size), np.zeros(column.size, dtype=bool)
+    off = column - _median_of_five(column)
+    steps = np.abs(np.diff(np.lib.stride_tricks.sliding_window_view(np.pad(column, 4, mode="reflect"), 9)))
+    limit = np.maximum(_SPIKE * max(estimated_noise(column, time), 1e-9 * span), _INCREMENTS * np.median(steps, axis=1))
+    return off / span, np.abs(off) > limit
+
+
+def _median_of_five(column: Array) -> Array:
+    if column.size < 5:
+        return column
+    near = np.lib.stride_tricks.sliding_window_view(np.pad(column, 2, mode="reflect"), 5)
+    return np.asarray(np.median(near, axis=1))

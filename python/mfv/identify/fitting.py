@@ -172,7 +172,7 @@ def _about_the_rig(problem: Problem, found: Any, estimate: Estimate) -> list[str
             is_unknown = (loop.name, name) in known
             value, error = known[loop.name, name] if is_unknown else problem.score(found.x, found.jac, name, number)
             if abs(value) > SIGNIFICANT * error:
-                size = str(RigError(loop.name, name, value, error)).partition(" ")[2]
+                size = RigError(loop.name, name, value, error).size
                 sentences.append(f"{loop.name}: {_ADVICE[name].format(size)}" + _included(name, value, is_unknown))
     return sentences
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import input_error
-from .columns import estimated_noise
+from .columns import estimated_noise, far_from_neighbours
 from .path import Path, path_of
 
 Array = NDArray[np.float64]
@@ -56,6 +56,7 @@ class Loop:
             raise input_error(f"{self.name}: needs two columns of equal length with at least 5 rows, tangential_force and shift")
         if not (np.isfinite(self.tangential_force).all() and np.isfinite(self.shift).all() and np.isfinite(pressing).all()):
             raise input_error(f"{self.name}: the columns must be finite numbers; remove the rows with gaps")
+        pressing = pressing[~far_from_neighbours(pressing)[1]]
         self.normal_force = float(pressing.mean())
         if not self.normal_force > 0.0 or np.std(pressing) > 0.05 * self.normal_force:
             raise input_error(

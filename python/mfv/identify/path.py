@@ -93,15 +93,16 @@ def path_of(loop: Loop) -> Path:
     noise = force_noise if by_force else shift_noise
     rows = _turning_rows(driven, noise, amplitude)
     ends = [0, *rows, driven.size - 1]
-    time, sampling = np.arange(driven.size, dtype=float), "rows"
+    time: Array = np.arange(driven.size, dtype=float)
+    sampling: Literal["time", "rows", "arc length"] = "rows"
     if loop.time is not None:
         time, sampling = loop.time, "time"
     elif _is_uneven(driven, ends, amplitude):
         sampling = "arc length"
         relative = scatter_in_the_plane(force, shift)
         force_noise, shift_noise = (
-            min(found, relative * float(np.ptp(column))) if noise is None else noise
-            for (column, noise), found in zip(columns, (force_noise, shift_noise))
+            min(estimate, relative * float(np.ptp(column))) if given is None else given
+            for (column, given), estimate in zip(columns, (force_noise, shift_noise))
         )
         noise = force_noise if by_force else shift_noise
         rows = _turning_rows(driven, noise, amplitude)
@@ -109,12 +110,12 @@ def path_of(loop: Loop) -> Path:
     warnings = []
     steps = [0.0 if noise == 0.0 else grid_step(column) for column, noise in columns]
     noises = []
-    for name, step, found, (_, given) in zip(("tangential_force", "shift"), steps, (force_noise, shift_noise), columns):
+    for name, step, estimate, (_, given) in zip(("tangential_force", "shift"), steps, (force_noise, shift_noise), columns):
         rounding = step / math.sqrt(12.0)
-        noises.append(max(found, rounding) if given is None else math.hypot(found, rounding))
+        noises.append(max(estimate, rounding) if given is None else math.hypot(estimate, rounding))
         if step > 0.5 * noises[-1]:
             warnings.append(
-                f"{loop.name}: the resolution of {name}, {step:.3g}, is not below its noise: rows are rounded, and their errors not "
+                f"{loop.name}: the resolution of {name}, {step:.3g}, is not below its noise: rows are rounded, and their errors are not "
                 "independent; use a smaller range of the converter"
             )
     noise = noises[0] if by_force else noises[1]

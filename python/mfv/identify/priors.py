@@ -31,17 +31,25 @@ class Priors:
 
 
 class RigError(NamedTuple):
-    """An estimated systematic error of a loop, in the units of `Priors`."""
+    """An estimated systematic error of a loop, in the units of `Priors`.
+
+    `is_determined`: whether the loop, and not the prior alone, says something about it.
+    """
 
     loop: str
     name: str
     value: float
     standard_error: float
+    is_determined: bool = True
+
+    @property
+    def size(self) -> str:
+        """Value and standard error with their unit."""
+        factor, unit = (1.0, "degrees") if self.name == "lag" else (100.0, "%")
+        return f"{factor * self.value:.2f} ± {factor * self.standard_error:.2g} {unit}"
 
     def __str__(self) -> str:
-        if self.name == "lag":
-            return f"lag {self.value:.2f} ± {self.standard_error:.2g} degrees"
-        return f"{self.name} {100.0 * self.value:.2f} ± {100.0 * self.standard_error:.2g} %"
+        return f"{self.name} {self.size if self.is_determined else 'not determined'}"
 
 
 #: The systematic errors in the order of the unknowns.

@@ -361,7 +361,7 @@ class Problem:
             max(jacobian.shape[0] - jacobian.shape[1], 1),
             [],
             [
-                RigError(loop.name, name, float(x[place]), float(spread[place]))
+                RigError(loop.name, name, float(x[place]), float(spread[place]), bool(spread[place] < 0.9 * self.widths[place]))
                 for loop, places in zip(self.loops, self.places)
                 for name, place in places.errors.items()
                 if self.active[place]
