@@ -170,6 +170,8 @@ def _about_the_rig(problem: Problem, found: Any, estimate: Estimate) -> list[str
             continue
         for name in NAMES:
             is_unknown = (loop.name, name) in known
+            if name == "offset" and not is_unknown:
+                continue
             value, error = known[loop.name, name] if is_unknown else problem.score(found.x, found.jac, name, number)
             if abs(value) > SIGNIFICANT * error:
                 size = RigError(loop.name, name, value, error).size

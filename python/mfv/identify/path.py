@@ -11,7 +11,7 @@ from numpy.polynomial import Chebyshev
 from numpy.typing import NDArray
 
 from ..errors import input_error
-from .columns import estimated_noise, grid_step, scatter_in_the_plane, spikes_of
+from .columns import estimated_noise, grid_step, robust_deviation, scatter_in_the_plane, spikes_of
 
 if TYPE_CHECKING:
     from .loop import Loop
@@ -260,9 +260,9 @@ def _piece(time: Array, driven: Array) -> Chebyshev:
 def _level(driven: Array, time: Array, ends: list[int], number: int, noise: float) -> tuple[float, float, float]:
     """The value of the driven column at an end of a branch, its standard error, and its time.
 
-    The maximum of noisy rows is biased outwards. Instead, a corner, value + c1 |t - end| + c2 (t - end)^2, and a smooth maximum,
-    value + c2 (t - end)^2 + c4 (t - end)^4, are fitted over the time t to a third of the branches on either side; the better one
-    counts.
+    The maximum of noisy rows is biased outwards. Instead, a corner, value + c1 |t - end| + c2 (t - end)^2, one with other numbers on
+    either side, and a smooth maximum, value + c2 (t - end)^2 + c4 (t - end)^4, are fitted over the time t to a third of the branches
+    on either side; the one with the best Bayesian information criterion counts.
     """
     row = ends[number]
     if noise == 0.0:
@@ -279,15 +279,34 @@ def _level(driven: Array, time: Array, ends: list[int], number: int, noise: floa
     for half in (widest, 0.1 * widest) if widest else (0.0,):
         middle = best[3] if half != widest else float(time[row])
         for end in middle + half * np.linspace(-1.0, 1.0, 21) if half else [middle]:
-            distance = np.abs(time[window] - end) / span
-            for powers in ((1, 2), (2, 4)):
-                basis = np.stack([np.ones(window.size), *(distance**power for power in powers)], axis=1)
+            distance = (time[window] - end) / span
+            sides = (np.minimum(distance, 0.0), np.maximum(distance, 0.0))
+            shapes = [[np.abs(distance), distance**2], [distance**2, distance**4]]
+            shapes += [[side**power for side in sides for power in (1, 2)]] if widest else []
+            for shape in shapes:
+                basis = np.stack([np.ones(window.size), *shape], axis=1)
                 coefficients = np.linalg.lstsq(basis, driven[window], rcond=None)[0]
-                misfit = float(np.sum((driven[window] - basis @ coefficients) ** 2))
-                if misfit < best[0]:
+                misfit = float(np.sum((driven[window] - basis @ coefficients) ** 2)) / noise**2
+                misfit += basis.shape[1] * math.log(window.size)
+                # On a smooth curve two sides would meet anywhere: only a corner turns.
+                is_turn = len(shape) < 4 or coefficients[1] * coefficients[3] < 0.0
+                if misfit < best[0] and is_turn:
                     error = noise * math.sqrt(np.linalg.inv(basis.T @ basis)[0, 0])
                     best = (misfit, float(coefficients[0]), error, float(end))
     return best[1], best[2], best[3]
+
+
+def extremes_of(column: Array, time: Array | None = None) -> list[tuple[float, float, float]]:
+    """Values, standard errors and times of the turning points inside a column whose rows are evenly spaced or have a time, without
+    those at its ends."""
+    at = np.arange(column.size, dtype=float) if time is None else time
+    noise = estimated_noise(column, time)
+    if np.ptp(np.diff(at)) < 1e-3 * float(np.median(np.diff(at))):
+        # Few rows a period: fourth differences contain less of the motion.
+        noise = min(noise, robust_deviation(np.diff(column, 4)) / math.sqrt(70.0))
+    rows = _reversals(column, 8.0 * noise)
+    ends = [0, *rows, column.size - 1]
+    return [_level(column, at, ends, number, noise) for number in range(1, len(ends) - 1)]
 
 
 def _grouped(

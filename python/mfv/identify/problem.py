@@ -118,6 +118,9 @@ class Problem:
             # Both directions, and enough rows: otherwise the prior would only be handed through.
             is_determined = loop.shift.size >= LEAST_ROWS and len(path.turns) > 1
             given = [float(getattr(priors, name)) if is_determined else 0.0 for name in NAMES]
+            if loop.drive == "tangential_force" and loop.cycles_before > 0:
+                # Cycles in partial slip depend on the range of the force alone.
+                given[NAMES.index("offset")] = 0.0
             active += [True, *(width > 0.0 for width in given), *[True] * count]
             # After sliding to both sides the contact does not depend on the origin of a prescribed shift; it is known to the range.
             widths += [1.0 if loop.drive == "shift" else math.inf, *given, *[1.0] * count]
