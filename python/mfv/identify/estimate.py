@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +18,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
+
+#: A parameter whose logarithm has a larger standard error than this is reported as not determined; from about here on intervals
+#: from standard errors are too narrow (docs/verification.md).
+UNDETERMINED = 0.15
 
 
 @dataclass(repr=False)
@@ -36,6 +41,7 @@ class Estimate:
     warnings: list[str]
     rig_errors: list[RigError] = field(default_factory=list)
     sensitivities: dict[str, dict[str, float]] = field(default_factory=dict)
+    _profile: Callable[[str, float], dict[str, tuple[float, float]]] | None = field(default=None, repr=False, compare=False)
 
     @property
     def standard_errors(self) -> dict[str, float]:
@@ -49,12 +55,20 @@ class Estimate:
             return np.asarray(self.covariance / np.outer(errors, errors))
 
     def interval(self, name: str, level: float = 0.95) -> tuple[float, float]:
-        """The confidence interval of a parameter, symmetric in its logarithm (Student's t)."""
-        quantile = needed("scipy.special").stdtrit(self.degrees_of_freedom, 0.5 + 0.5 * level)
-        relative = self.standard_errors[name] / self.values[name]
+        """The confidence interval of a parameter, symmetric in its logarithm (Student's t); of one that is not determined, from the
+        profile of chi-squared, which may have no upper limit. Another parameter's contains its values at those limits."""
+        quantile = float(needed("scipy.special").stdtrit(self.degrees_of_freedom, 0.5 + 0.5 * level))
+        relative = {each: error / self.values[each] for each, error in self.standard_errors.items()}
         with np.errstate(over="ignore"):
-            factor = float(np.exp(quantile * relative))
-        return self.values[name] / factor, self.values[name] * factor
+            factor = float(np.exp(quantile * relative[name]))
+        low, high = self.values[name] / factor, self.values[name] * factor
+        for each, error in relative.items():
+            if self._profile is not None and UNDETERMINED < error < math.inf:
+                limits = self._profile(each, quantile)[name]
+                if each == name:
+                    return limits
+                low, high = min(low, limits[0]), max(high, limits[1])
+        return low, high
 
     def __repr__(self) -> str:
         lines = [f"{'parameter':32} {'value':>11} {'std. error':>11}   95 % interval"]

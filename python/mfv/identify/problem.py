@@ -15,7 +15,7 @@ from .._packages import needed
 from ..errors import MfvError, input_error
 from ..scene import Output, Scene, Step
 from ..studies.axes import Axis
-from .estimate import Estimate
+from .estimate import UNDETERMINED, Estimate
 from .loop import Loop
 from .path import Path
 from .priors import NAMES, Priors, RigError
@@ -34,12 +34,11 @@ _REAL = ("float", "float | None", "Coefficient | None")
 #: Half the step of the central differences, in the logarithm of a parameter (docs/identify.md has the measurements).
 _DIFFERENCE = 0.05
 
-#: A parameter whose logarithm has a larger standard error than this is reported as not determined; from about here on intervals are
-#: too narrow (docs/verification.md).
-_UNDETERMINED = 0.15
-
 #: Two parameters with a larger correlation than this are reported as not separated.
 _CORRELATED = 0.98
+
+#: Logarithm of the factor beyond which a parameter has no limit.
+_FARTHEST_LIMIT = 8.0
 
 #: Largest factor between a parameter and its start value.
 _FARTHEST = 1.0e4
@@ -199,8 +198,8 @@ class Problem:
             start[self.active],
             jac=lambda active: self.jacobian(whole(active)),
             x_scale="jac",
-            xtol=1e-6,
-            ftol=1e-9,
+            xtol=1e-5,
+            ftol=1e-7,
             max_nfev=60,
         )
         found.x = whole(found.x).copy()
@@ -371,6 +370,14 @@ class Problem:
             ],
             self._sensitivities(x, jacobian),
         )
+        known: dict[tuple[str, float], dict[str, tuple[float, float]]] = {}
+
+        def profile(name: str, quantile: float) -> dict[str, tuple[float, float]]:
+            if (name, quantile) not in known:
+                known[name, quantile] = self.profile(x, jacobian, name, quantile)
+            return known[name, quantile]
+
+        estimate._profile = profile
         if self.datums:
             estimate.warnings.append(
                 f"the datum of the displacements, {max(self.datums.values()):.4g}, is the default for the largest normal force of the "
@@ -378,6 +385,45 @@ class Problem:
             )
         estimate.warnings += self._undetermined(estimate, np.sqrt(np.diag(relative)), lost[:count])
         return estimate
+
+    def profile(self, x: Array, jacobian: Array, name: str, quantile: float) -> dict[str, tuple[float, float]]:
+        """Values of a parameter at which chi-squared, least with respect to the other unknowns, is larger by the square of a quantile
+        than at the estimate, and the other parameters there. The others are linear, as at the estimate; limits beyond a factor of
+        3000 are 0 and infinity.
+        """
+        place = self.names.index(name)
+        rest = np.delete(jacobian, place, axis=1)
+        inverse = np.linalg.pinv(rest, rcond=1e-7)
+        others = [other for other in self.names if other != name]
+
+        def moved(step: float) -> tuple[float, Array]:
+            """Chi-squared and changes of the others."""
+            there = x.copy()
+            there[place] += step
+            if not self.reaches(there):
+                return math.inf, np.zeros(rest.shape[1])
+            residuals = self.residuals(there)
+            change = -inverse @ residuals
+            left = residuals + rest @ change
+            return float(left @ left), change
+
+        limit = moved(0.0)[0] + quantile**2
+        limits, ends = [], []
+        for sign, beyond in ((-1.0, 0.0), (1.0, math.inf)):
+            inside, outside = 0.0, 0.125
+            while outside < _FARTHEST_LIMIT and moved(sign * outside)[0] < limit:
+                inside, outside = outside, 2.0 * outside
+            is_free = outside >= _FARTHEST_LIMIT and moved(sign * outside)[0] < limit
+            for _ in range(0 if is_free else 6):
+                middle = 0.5 * (inside + outside)
+                inside, outside = (inside, middle) if moved(sign * middle)[0] >= limit else (middle, outside)
+            limits.append(beyond if is_free else float(math.exp(x[place] + sign * 0.5 * (inside + outside))))
+            ends.append(moved(sign * inside)[1])
+        result = {name: (limits[0], limits[1])}
+        for number, other in enumerate(others):
+            values = [math.exp(x[self.names.index(other)] + min(max(float(end[number]), -7.0), 7.0)) for end in ends]
+            result[other] = (min(values), max(values))
+        return result
 
     def _sensitivities(self, x: Array, jacobian: Array) -> dict[str, dict[str, float]]:
         """Relative changes of the parameters by a small lag and by a small drift of all loops, if neither were an unknown."""
@@ -415,9 +461,13 @@ class Problem:
         """Sentences about what the loops do not determine."""
         sentences = []
         for name, error, is_lost in zip(self.names, relative, lost):
-            if is_lost or not error <= _UNDETERMINED:
+            if is_lost or not error <= UNDETERMINED:
                 low, high = estimate.interval(name)
-                why = "the loops do not depend on it separately" if is_lost else f"95 % interval from {low:.3g} to {high:.3g}"
+                why = (
+                    "the loops do not depend on it separately"
+                    if is_lost
+                    else f"95 % interval from {low:.3g} " + ("on" if math.isinf(high) else f"to {high:.3g}")
+                )
                 sentences.append(f"{name} is not determined ({why}){self._advice(name, estimate.values)}")
         for i, name in enumerate(self.names):
             for j, other in enumerate(self.names[:i]):
