@@ -46,6 +46,9 @@ _FARTHEST = 1.0e4
 #: Rows that a loop needs for its systematic errors to be unknowns.
 LEAST_ROWS = 20
 
+#: Rows of a record with a lag that are nearer than this to its ends are not used [cycles].
+EDGE = 0.01
+
 #: Half the steps of the central differences in the systematic errors.
 _STEPS = {"lag": 0.1, "drift": 1e-3, "offset": 0.01, "slack": 2e-3}
 
@@ -120,6 +123,9 @@ class Problem:
             if loop.drive == "tangential_force" and loop.cycles_before > 0:
                 # Cycles in partial slip depend on the range of the force alone.
                 given[NAMES.index("offset")] = 0.0
+            if given[NAMES.index("lag")] > 0.0:
+                # A lag takes them to before the record, where the branch is another one.
+                self.is_used[len(self.places) - 1] &= (path.time - path.time[0] >= EDGE) & (path.time[-1] - path.time >= EDGE)
             active += [True, *(width > 0.0 for width in given), *[True] * count]
             # After sliding to both sides the contact does not depend on the origin of a prescribed shift; it is known to the range.
             widths += [1.0 if loop.drive == "shift" else math.inf, *given, *[1.0] * count]
