@@ -140,7 +140,7 @@ class Count:
     widths: tuple[float, ...] = ()
 
 
-def tried(rig: Rig, names: str, seeds: range, nodes: int = 41, shown: Callable[[identify.Fit], None] | None = None) -> Count:
+def tried(rig: Rig, names: str, seeds: range, nodes: int = 61, shown: Callable[[identify.Fit], None] | None = None) -> Count:
     """Fit loops of a rig with sets of noise; triangular and sinusoidal cycles by turns."""
     count = Count()
     for seed in seeds:

@@ -16,9 +16,9 @@ NAME, HELP = "identify", "estimate parameters of a case from measured loops"
 
 DESCRIPTION = """\
 Estimate parameters of a case from measured loops of tangential force over shift: values, standard errors, intervals,
-correlations, warnings, and a picture of loops and residuals. Lag, drift and offset of the rig are estimated too. The loops are comma-separated columns Q, U and P, and test
-if there are several, under a line with their names. Parameters are keys of the case, and rig_stiffness. Needs scipy.
-See docs/identify.md.
+correlations, warnings, and a picture of loops and residuals. Lag, drift and offset of the rig are estimated too. The
+loops are comma-separated columns Q, U and P, and test if there are several, under a line with their names. Parameters
+are keys of the case, and rig_stiffness. Needs scipy. See docs/identify.md.
 """
 
 EXAMPLES = """\

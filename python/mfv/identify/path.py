@@ -25,6 +25,9 @@ _CORRELATED, _LARGE = 0.4, 0.002
 #: Degrees of the polynomials over the time of a branch, and the rows that a branch needs for one.
 _DEGREES, _ENOUGH = (1, 3, 5, 7), 16
 
+#: Standard errors of extremes grow by this factor as the time of the turn and its shape are chosen by the fit (120 synthetic loops).
+SEARCHED = 1.2
+
 #: Part of the range near an extreme whose rows determine it if their times are unknown.
 _NEAR = 0.15
 
@@ -291,7 +294,7 @@ def _level(driven: Array, time: Array, ends: list[int], number: int, noise: floa
                 # On a smooth curve two sides would meet anywhere: only a corner turns.
                 is_turn = len(shape) < 4 or coefficients[1] * coefficients[3] < 0.0
                 if misfit < best[0] and is_turn:
-                    error = noise * math.sqrt(np.linalg.inv(basis.T @ basis)[0, 0])
+                    error = noise * math.sqrt(np.linalg.inv(basis.T @ basis)[0, 0]) * (SEARCHED if widest else 1.0)
                     best = (misfit, float(coefficients[0]), error, float(end))
     return best[1], best[2], best[3]
 

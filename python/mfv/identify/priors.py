@@ -14,8 +14,8 @@ class Priors:
     """Standard deviations, around 0, of the systematic errors of every loop, which are unknowns of a fit; 0 leaves one out.
 
     `lag`: of the shift behind the force [degrees of a cycle]; `drift`: of the shift in a cycle, over half its range; `offset`: of the
-    zero of the force, over half its range, of loops with a prescribed shift or from the first loading; `slack`: play in series with the contact, which the shift jumps by where the force
-    changes its sign, over half its range. Raises InputError.
+    zero of the force, over half its range, of loops with a prescribed shift or from the first loading; `slack`: play in series with
+    the contact, which the shift jumps by where the force changes its sign, over half its range. Raises InputError.
     """
 
     lag: float = 1.0
