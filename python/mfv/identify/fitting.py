@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 OUTLIER = 5.0
 
 #: Systematic errors of more than this many standard errors are reported.
-SIGNIFICANT = 3.3
+SIGNIFICANT = 3.0
 
 #: What a systematic error does.
 _ADVICE = {
