@@ -28,6 +28,9 @@ _DEGREES, _ENOUGH = (1, 3, 5, 7), 16
 #: Standard errors of extremes grow by this factor as the time of the turn and its shape are chosen by the fit (120 synthetic loops).
 SEARCHED = 1.2
 
+#: Rows that each side of a corner needs for numbers of its own.
+BOTH_SIDES = 8
+
 #: Part of the range near an extreme whose rows determine it if their times are unknown.
 _NEAR = 0.15
 
@@ -285,7 +288,7 @@ def _level(driven: Array, time: Array, ends: list[int], number: int, noise: floa
             distance = (time[window] - end) / span
             sides = (np.minimum(distance, 0.0), np.maximum(distance, 0.0))
             shapes = [[np.abs(distance), distance**2], [distance**2, distance**4]]
-            shapes += [[side**power for side in sides for power in (1, 2)]] if widest else []
+            shapes += [[side**power for side in sides for power in (1, 2)]] if widest and min(reach) >= BOTH_SIDES else []
             for shape in shapes:
                 basis = np.stack([np.ones(window.size), *shape], axis=1)
                 coefficients = np.linalg.lstsq(basis, driven[window], rcond=None)[0]
