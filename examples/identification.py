@@ -13,10 +13,12 @@ import dataclasses
 import numpy as np
 
 from mfv import Body, Friction, Mesh, Scene, identify
-from mfv.identify import Loop
+from mfv.identify import Loop, Priors
 
 MU, FORCE, NOISE = 0.45, 100.0, 0.015
 TRUTH = {"friction%mu": MU, "rig_stiffness": 1.0e5}  # N/mm per mm
+#: Noise alone: a rig without lag, drift and offset.
+PRIORS = Priors(lag=0.0, drift=0.0, offset=0.0)
 START = {"friction%mu": 0.6, "rig_stiffness": 7.0e4}
 
 
@@ -55,8 +57,11 @@ def gross(*, shift_noise: float = 0.0, rows: int = 100) -> Loop:
 
 def coverage(name: str, loop: Loop, nodes: int, seeds: int) -> None:
     """How many of the intervals contain the truth."""
-    fits = [identify.fit(scene(nodes), identify.simulate(scene(nodes), loop, TRUTH, seed=seed), START) for seed in range(seeds)]
-    planned = identify.plan(scene(nodes), loop, TRUTH)
+    fits = [
+        identify.fit(scene(nodes), identify.simulate(scene(nodes), loop, TRUTH, seed=seed), START, priors=PRIORS)
+        for seed in range(seeds)
+    ]
+    planned = identify.plan(scene(nodes), loop, TRUTH, priors=PRIORS)
     for parameter, truth in TRUTH.items():
         inside = sum(low <= truth <= high for fit in fits for low, high in [fit.interval(parameter)])
         spread = np.std([np.log(fit.values[parameter]) for fit in fits])
@@ -80,8 +85,10 @@ def plain_and_weighted(ratio: float, seeds: int) -> None:
     found = {"both columns noisy": [], "largest force as amplitude": []}
     for seed in range(seeds):
         (loop,) = identify.simulate(scene(), planned, TRUTH, seed=seed)
-        found["both columns noisy"].append(identify.fit(scene(), loop, START).values["friction%mu"])
-        found["largest force as amplitude"].append(identify.fit(scene(), read_at_the_largest(loop), START).values["friction%mu"])
+        found["both columns noisy"].append(identify.fit(scene(), loop, START, priors=PRIORS).values["friction%mu"])
+        found["largest force as amplitude"].append(
+            identify.fit(scene(), read_at_the_largest(loop), START, priors=PRIORS).values["friction%mu"]
+        )
     for name, values in found.items():
         low, middle, high = np.quantile(values, [0.05, 0.5, 0.95])
         print(
@@ -103,7 +110,7 @@ def further_tests() -> None:
         "with gross sliding": [gross(shift_noise=NOISE, rows=200)],
     }
     for name, more in tests.items():
-        errors = identify.plan(scene(201), [first, *more], TRUTH).standard_errors
+        errors = identify.plan(scene(201), [first, *more], TRUTH, priors=PRIORS).standard_errors
         print(
             f"{name:26} mu to {errors['friction%mu'] / MU:7.2%}   rig stiffness to {errors['rig_stiffness'] / 1e5:6.2%}", flush=True
         )

@@ -81,7 +81,10 @@ def histories() -> dict[str, tuple[joint.Measurement, dict[str, joint.Assessment
     for name, friction in (("pressed without friction", False), ("pressed with friction", True)):
         measured = joint.measure(coupled(friction), COUPLED_RATIOS, repeats=3)
         curves = {"first loading": measured.backbone, "largest cycle": measured.cycles[-1].backbone()}
-        found[name] = measured, {key: joint.assess(joint.Masing.of(curve), measured) for key, curve in curves.items()}
+        found[name] = (
+            measured,
+            {key: joint.assess(joint.Masing(curve.displacement, curve.force), measured) for key, curve in curves.items()},
+        )
     return found
 
 

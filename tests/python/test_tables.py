@@ -253,7 +253,7 @@ def synthetic(seed: int = 0) -> tuple[Scene, identify.Loop]:
         (1.0, 1.0e3, 1.0, "of the stiffness of contact and rig: a shift in micrometres where the scene has millimetres"),
         (8.0, 1.0, 8.0, "times as stiff as the contact, which a rig can only make softer: forces in N where the scene has N/mm"),
         (1.0, 1.0e-3, 1.0, "times as stiff as the contact"),
-        (1.0, -1.0, 1.0, "the force falls while the shift grows, and the loop runs the wrong way round: the sign of one"),
+        (1.0, -1.0, 1.0, "shift and tangential force have opposite signs (the loop runs clockwise"),
         (12.0, 1.0, 1.0, "the tangential force reaches 4.2 times the normal force: their units differ"),
     ],
 )

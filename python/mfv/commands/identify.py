@@ -1,4 +1,4 @@
-"""mfv identify: parameters of a scene from measured loops."""
+"""python -m mfv identify: parameters of a scene from measured loops."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import argparse
 from pathlib import Path
 
 from .._files import PICTURES, target, written
+from ..errors import InputError
+from ..identify.priors import NAMES, Priors
 from ..scene import Scene
 from .completion import complete_files
 from .shared import add_output
@@ -14,10 +16,10 @@ NAME, HELP = "identify", "estimate parameters of a case from measured loops"
 
 DESCRIPTION = """\
 Estimate parameters of a case from measured loops of tangential force over shift: values, standard errors, intervals,
-correlations, warnings, and a picture of loops and residuals. The loops are the columns Q, U and P of a text file, and
-test if there are several, under a line with their names; units in the names are converted to those of &scene (mm and N
-without length_unit and force_unit). Parameters are keys of the case, and rig_stiffness. Needs scipy. See
-docs/identify.md.
+correlations, warnings, and a picture of loops and residuals. Lag, drift and offset of the rig are estimated too. The
+loops are the columns Q, U and P of a text file, and test if there are several, under a line with their names; units in
+the names are converted to those of &scene (mm and N without length_unit and force_unit). Parameters are keys of the
+case, and rig_stiffness. Needs scipy. See docs/identify.md.
 """
 
 EXAMPLES = """\
@@ -48,6 +50,18 @@ def _pair(text: str) -> tuple[str, str]:
     return meaning.strip(), value.strip()
 
 
+def _prior(text: str) -> tuple[str, float]:
+    """A systematic error of the rig and the width of its prior. Raises ArgumentTypeError."""
+    name, _, value = text.partition("=")
+    try:
+        Priors(**{name.strip(): float(value)})
+        return name.strip(), float(value)
+    except (TypeError, ValueError, InputError):
+        raise argparse.ArgumentTypeError(
+            f"must be NAME=WIDTH such as slack=0.02 with NAME {', '.join(NAMES)}, not '{text}'"
+        ) from None
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     complete_files(parser.add_argument("file", type=Path, metavar="CASE.nml", help="case; its steps are not used"), "nml")
@@ -65,6 +79,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--unit", type=_pair, action="append", default=[], metavar="C=UNIT", help="unit of a column in the file")
     parser.add_argument("--reverse", action="append", default=[], metavar="C", help="change the sign of a column")
     parser.add_argument("--thickness", type=float, metavar="LENGTH", help="divides columns that are forces")
+    parser.add_argument(
+        "--prior",
+        type=_prior,
+        action="append",
+        default=[],
+        metavar="NAME=WIDTH",
+        help="standard deviation of lag [degrees], drift, offset or slack [parts of half the range], 0 for none; repeat it",
+    )
     add_output(parser, "PICTURE", "png, pdf, svg or eps (default: LOOPS.png beside the loops)")
 
 
@@ -88,7 +110,7 @@ def run(options: argparse.Namespace) -> None:
             raise ValueError(f"{options.other}: no test '{test}'; there are {', '.join(tests)}")
         tests[test].drive = "shift"
     picture = target(options.output, options.other.with_suffix(".png"), PICTURES, [options.file, options.other])
-    fitted = fit(scene, loops, dict(options.free))
+    fitted = fit(scene, loops, dict(options.free), priors=Priors(**dict(options.prior)))
     print(fitted)
     with written(picture) as part:
         fitted.figure().savefig(part, dpi=150)

@@ -15,6 +15,13 @@ class Backbone(NamedTuple):
 
     displacement: Array  #: [length]
     force: Array  #: [force/length]
+    doubt: str = ""  #: why models of this curve are wrong, if `measure` found that; fits refuse it
+
+    def trusted(self) -> Backbone:
+        """The backbone, if nothing is known against models of it. Raises ValueError."""
+        if self.doubt:
+            raise ValueError(self.doubt)
+        return self
 
     @classmethod
     def of(cls, displacement: ArrayLike, force: ArrayLike) -> Backbone:
@@ -41,7 +48,7 @@ class Backbone(NamedTuple):
         Another datum changes the shift by such a compliance and nothing else, ln(D2/D1)/(pi m) (docs/theory.md).
         Raises ValueError if a negative compliance leaves none.
         """
-        return Backbone.of(self.displacement + compliance * self.force, self.force)
+        return Backbone.of(self.displacement + compliance * self.force, self.force)._replace(doubt=self.doubt)
 
     def concave(self) -> Backbone:
         """The least concave backbone that is nowhere below: its points are some of this one's (upper convex hull).
@@ -53,7 +60,7 @@ class Backbone(NamedTuple):
             while len(kept) > 1 and self._slope(kept[-2], kept[-1]) <= self._slope(kept[-1], point):
                 kept.pop()
             kept.append(point)
-        return Backbone(self.displacement[kept], self.force[kept])
+        return Backbone(self.displacement[kept], self.force[kept], self.doubt)
 
     def _slope(self, first: int, last: int) -> float:
         return float((self.force[last] - self.force[first]) / (self.displacement[last] - self.displacement[first]))

@@ -24,9 +24,9 @@ def table(backbone: Backbone) -> Iwan:
 
     With the points u_i and the slopes k_i up to them, the slider at u_i has the stiffness k_i - k_(i+1). A stiffness
     that increases by less than 1e-6 of the first one, as round-off can cause, counts as constant. Raises ValueError if it increases
-    by more (use `Backbone.concave`, or `Masing`), or is constant everywhere.
+    by more (use `Backbone.concave`, or `Masing`), or is constant everywhere, or if the backbone is in doubt.
     """
-    slopes = backbone.stiffness
+    slopes = backbone.trusted().stiffness
     drops = -np.diff(slopes)
     bends = drops > 1.0e-9 * slopes[0]
     rises = drops < -1.0e-6 * slopes[0]
@@ -78,7 +78,7 @@ def segalman(measured: Measurement) -> Segalman:
     """Segalman's four parameters: F_S and K_T of the backbone (its end and its beginning), chi and beta by least squares.
 
     The squares are of the logarithms of dissipation and secant stiffness, model over cycle, at the amplitudes of the cycles.
-    Needs scipy.
+    Needs scipy. Raises ValueError, also if the backbone is in doubt.
     """
     amplitude, force, energy = _cycles(measured)
     start = float(np.polyfit(np.log(amplitude), np.log(energy), 1)[0]) - 3.0
@@ -95,7 +95,7 @@ def segalman(measured: Measurement) -> Segalman:
 
 def bouc_wen(measured: Measurement) -> BoucWen:
     """All five parameters of Bouc and Wen's model, thermodynamically admissible, by least squares of the same logarithms as
-    `segalman`. Needs scipy."""
+    `segalman`. Needs scipy. Raises ValueError."""
     amplitude, force, energy = _cycles(measured)
 
     def model(unknowns: Array) -> BoucWen:
@@ -113,7 +113,9 @@ def bouc_wen(measured: Measurement) -> BoucWen:
 
 
 def _cycles(measured: Measurement) -> tuple[Array, Array, Array]:
-    """Displacement amplitudes, force amplitudes and dissipations. Raises ValueError if no cycle dissipates."""
+    """Displacement amplitudes, force amplitudes and dissipations. Raises ValueError if no cycle dissipates or the backbone is in
+    doubt."""
+    measured.backbone.trusted()
     cycles = [cycle for cycle in measured.cycles if cycle.slips]
     if len(cycles) < 2:
         raise ValueError("the fit needs two or more cycles that dissipate")

@@ -31,6 +31,12 @@ MARGIN = 0.25
 ROUND_OFF = 1.0e-8
 
 
+#: Difference of force between Masing's rules on first loading and a cycle, over the sliding force, above which first loading is not
+#: used. It is below 0.02 where the contact remembers its turning points alone, and 0.08 or more after pressing with friction and full
+#: coupling (docs/joints.md).
+MEMORY = 0.04
+
+
 class Cycle(NamedTuple):
     """A closed cycle of tangential force, from +Q to -Q and back."""
 
@@ -78,6 +84,17 @@ class Measurement(NamedTuple):
         """The force at which all slides [force/length]."""
         return float(self.backbone.force[-1])
 
+    def steady(self) -> Measurement:
+        """The same cycles with the backbone of the largest one, continued as first loading goes on from its force.
+
+        For a contact that remembers how the bodies were brought together, cycles of about this amplitude are predicted by it.
+        """
+        curve, first = self.cycles[-1].backbone(), self.backbone
+        reached = float(np.interp(curve.force[-1], first.force, first.displacement))
+        later = first.force > curve.force[-1] * (1.0 + 1.0e-9)
+        displacement = np.append(curve.displacement, first.displacement[later] - reached + curve.displacement[-1])
+        return self._replace(backbone=_points(displacement, np.append(curve.force, first.force[later])))
+
 
 def measure(scene: Scene, force_ratios: Sequence[float] = RATIOS, *, repeats: int = 1) -> Measurement:
     """Shear a scene: a backbone up to sliding, and cycles between +Q and -Q of growing amplitude.
@@ -86,7 +103,8 @@ def measure(scene: Scene, force_ratios: Sequence[float] = RATIOS, *, repeats: in
     then constant. They may shear the bodies, but must end at a tangential force of 0. `force_ratios`: Q/(mu P), increasing, between
     0 and 1. `repeats`: cycles of every amplitude, of which the last is returned; with full coupling the first one differs. With
     refine='edges' in the mesh the intervals are small where slip zones end at these amplitudes; the backbone has the same mesh.
-    Every event is a point, so `accuracy` of the solver must be 0.
+    Every event is a point, so `accuracy` of the solver must be 0. If Masing's rules on first loading do not give the cycles, the
+    backbone says so (`doubt`), and fits refuse it.
     Raises ValueError, InputError, and the exception of a run that ends early.
     """
     ratios = [float(ratio) for ratio in force_ratios]
@@ -108,7 +126,30 @@ def measure(scene: Scene, force_ratios: Sequence[float] = RATIOS, *, repeats: in
     origin = len(scene.steps)
     _check_origin(result.history, origin)
     cycles = [_last_cycle(result.history, origin, step) for step in range(origin + 2, origin + 2 * len(ratios) + 1, 2)]
-    return Measurement(_backbone(scene, result, cycles[-1].force_amplitude), cycles)
+    backbone = _backbone(scene, result, cycles[-1].force_amplitude)
+    return Measurement(backbone._replace(doubt=_doubt(backbone, cycles)), cycles)
+
+
+def _doubt(backbone: Backbone, cycles: list[Cycle]) -> str:
+    """Why models of first loading would be wrong; nothing if Masing's rules on it give the unloading branches of the cycles."""
+    worst = 0.0
+    for cycle in cycles:
+        end = int(np.argmin(cycle.force)) + 1
+        shift, force = cycle.displacement[:end], cycle.force[:end]
+
+        def loaded(displacement: Array | float) -> Array:
+            return np.asarray(np.interp(displacement, backbone.displacement, backbone.force))
+
+        expected = loaded(shift[0]) - 2.0 * loaded(0.5 * (shift[0] - shift))
+        worst = max(worst, float(np.max(np.abs(expected - force))))
+    worst /= float(backbone.force[-1])
+    if worst < MEMORY:
+        return ""
+    return (
+        f"first loading does not predict the cycles: by Masing's rules their forces would be off by {worst:.0%} of the sliding force, "
+        "since the contact remembers how the bodies were brought together (friction while pressing, with coupling); use "
+        "measured.steady(), which has the backbone of the largest cycle, or press with friction=False"
+    )
 
 
 def _check(scene: Scene) -> None:

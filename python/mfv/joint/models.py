@@ -69,6 +69,12 @@ class _Saved:
 
     NAME: ClassVar[str]
 
+    def __post_init__(self) -> None:
+        """Numbers of any kind, such as those of numpy, become Python's. Raises ValueError."""
+        for each in fields(self):  # type: ignore[arg-type]
+            if each.type == "float":
+                object.__setattr__(self, each.name, _number(each.name, getattr(self, each.name)))
+
     def to_json(self) -> str:
         """The model as JSON text, from which `from_json` makes it again with the same digits."""
         values = {name: np.asarray(value).tolist() for name, value in asdict(self).items()}  # type: ignore[call-overload]
@@ -89,6 +95,17 @@ class _Saved:
                     f"{each.name} of a joint must be {'a number' if is_number else 'a list of numbers'}, not {value!r}"
                 )
         return cls(**values)
+
+
+def _number(name: str, value: Any) -> float:
+    """A value of any kind of number, also an array of one, as Python's. Raises ValueError."""
+    try:
+        number = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        number = np.zeros(0)
+    if number.size != 1 or value is None or isinstance(value, (bool, np.bool_, str, bytes)):
+        raise ValueError(f"{name} of a joint must be a number, not {value!r}")
+    return float(number.reshape(()))
 
 
 def _is_number(value: Any) -> bool:
@@ -112,6 +129,7 @@ class Iwan(_Saved):
     NAME: ClassVar[str] = "iwan"
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         for name in ("stiffness", "slip"):
             values = np.array(getattr(self, name), dtype=np.float64)
             if values.ndim != 1 or values.size == 0 or not np.all(np.isfinite(values)) or np.any(values <= 0.0):
@@ -179,6 +197,7 @@ class Segalman(_Saved):
     NAME: ClassVar[str] = "segalman"
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         if not (self.sliding_force > 0.0 and self.stiffness > 0.0 and self.chi > -1.0 and self.beta >= 0.0):
             raise ValueError("Segalman's model needs sliding_force and stiffness above 0, chi above -1 and beta at least 0")
 
@@ -297,8 +316,8 @@ class Masing(_Saved):
 
     def __post_init__(self) -> None:
         backbone = Backbone.of(self.displacement, self.force)
-        for name, values in backbone._asdict().items():
-            object.__setattr__(self, name, values)
+        object.__setattr__(self, "displacement", backbone.displacement)
+        object.__setattr__(self, "force", backbone.force)
 
     @cached_property
     def _slopes(self) -> Array:
@@ -306,7 +325,8 @@ class Masing(_Saved):
 
     @classmethod
     def of(cls, backbone: Backbone) -> Masing:
-        """The model with a backbone."""
+        """The model with a backbone. Raises ValueError if it is in doubt."""
+        backbone.trusted()
         return cls(backbone.displacement, backbone.force)
 
     def start(self) -> Array:
@@ -360,6 +380,7 @@ class BoucWen(_Saved):
     NAME: ClassVar[str] = "bouc_wen"
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         if not (
             self.stiffness > 0.0 and self.sliding_force > 0.0 and self.exponent > 0.0 and self.shape >= 0.5 and self.elastic >= 0.0
         ):
