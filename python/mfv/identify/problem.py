@@ -570,7 +570,7 @@ def _inverse_information(jacobian: Array) -> tuple[Array, NDArray[np.bool_]]:
     norms = np.linalg.norm(jacobian, axis=0)
     scale = np.where(norms > 0.0, norms, 1.0)
     _, singular, directions = np.linalg.svd(jacobian / scale, full_matrices=False)
-    is_null = singular < 1e-7 * singular[0]
+    is_null = singular <= 1e-7 * singular[0]
     lost = (norms == 0.0) | np.any(np.abs(directions[is_null]) > 1e-3, axis=0)
     inverse = 1.0 / np.where(is_null, np.inf, singular)
     covariance = (directions.T * inverse**2) @ directions / np.outer(scale, scale)

@@ -235,8 +235,8 @@ contains
 
    !> The dissipation of a chain by its samples: by slopes, or node by node if that is exact. Its error is taken to be half the
    !> difference to the sum node by node, extrapolated at second order, but at least a sixth of that to the sum itself; twice as
-   !> much with two samples; and at least a third of the change from half as many, or from the sum without rates (where the load passes
-   !> a former reversal, rates jump, and the sums converge at second order).
+   !> much with two samples; and at least a third of the change from half as many, or from the sum without rates (where the load
+   !> passes a former reversal, rates jump, and the sums converge at second order).
    subroutine weigh_samples(path, chain)
       class(contact_path_type), intent(in) :: path
       type(chain_type), intent(inout) :: chain
