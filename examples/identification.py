@@ -31,6 +31,8 @@ def scene(nodes: int = 101) -> Scene:
         friction=Friction.coulomb(1.0),
         mesh=Mesh(nodes=nodes, gap="parabolic"),
         coupling="none",
+        length_unit="mm",
+        force_unit="N",
     )
 
 

@@ -133,8 +133,12 @@ class Fit(Estimate):
 
     def figure(self) -> Figure:
         """A picture with a column for every loop: measured rows and model, the same without the line of the stick stiffness, which
-        hides a thin loop, and the residuals."""
+        hides a thin loop, and the residuals. Axes have the units of the scene."""
         from matplotlib import pyplot
+
+        length, force_unit = self._problem.scene.length_unit, self._problem.scene.force_unit
+        in_length = f" [{length}]" if length else ""
+        in_force = f" [{force_unit}/{length}]" if length and force_unit else ""
 
         figure, axes = pyplot.subplots(
             3, len(self.loops), figsize=(4.2 * len(self.loops), 8.4), squeeze=False, layout="constrained"
@@ -148,8 +152,8 @@ class Fit(Estimate):
                 ax.plot(shift - line * force, force, "-", lw=1, label="model")
             below.plot(residuals, ".", ms=3)
             below.axhline(0.0, color="black", lw=0.6)
-            above.set(title=loop.name, xlabel="shift U", ylabel="tangential force Q")
-            middle.set(xlabel=f"U - {slope:.3g} Q", ylabel="tangential force Q")
+            above.set(title=loop.name, xlabel=f"shift U{in_length}", ylabel=f"tangential force Q{in_force}")
+            middle.set(xlabel=f"U - {slope:.3g} Q{in_length}", ylabel=f"tangential force Q{in_force}")
             below.set(xlabel="row", ylabel="residual over standard deviation")
             above.legend(frameon=False)
             for ax in (above, middle):
