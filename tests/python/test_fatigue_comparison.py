@@ -84,7 +84,7 @@ def test_predictions_are_those_of_the_functions(series):
     k = fatigue.findley_constant(1.0, 1.0 / math.sqrt(3.0))
     value = fatigue.findley(fatigue.averaged_cycle(result, x, length, method="point"), k=k).maximum.value
     assert series[1].lives["Findley", "point"] == pytest.approx(fatigue.life(value, lambda n: curve.findley(n, k=k)), rel=1e-3)
-    assert series[1].half_width == pytest.approx(result.summary.edge_half_width)
+    assert series[1].half_width == pytest.approx(result.summary.contact_half_width)
     small, _, large = series
     for parameter in PARAMETERS:
         assert small.lives[parameter, "hot spot"] == pytest.approx(large.lives[parameter, "hot spot"], rel=1e-3)

@@ -318,7 +318,7 @@ def predict(test: PadTest, nodes: int = 101) -> Prediction:
         for parameter, value in _lives(test, _cycle(result, x, place, test.critical_length)).items()
     }
     notes = (*test.notes, *result.attributes.get("warnings", "").splitlines())
-    return Prediction(PadTest(test.values, test.where, notes), float(result.summary.edge_half_width), lives)
+    return Prediction(PadTest(test.values, test.where, notes), float(result.summary.contact_half_width), lives)
 
 
 def _cycle(result: Result, x: float, place: str, length: float) -> StressCycle:
