@@ -610,8 +610,13 @@ def test_completion_in_the_shell(line: str, expected: set[str], tmp_path: Path) 
 def test_what_is_no_result_is_told_in_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     case = tmp_path / "case.nml"
     case.write_text(SHEARED)
+    (tmp_path / "study.csv").write_text("case,outcome\n")
+    with h5py.File(tmp_path / "study.h5", "w") as table:
+        table.attrs.update({"mfv_version": "0.9.0", "cases": 4})
     for name, message in (
         ("case.nml", "a case, not a result; solve it first with 'mfv run'"),
+        ("study.csv", "not a result; for the table of a study write NetCDF: 'mfv study STUDY.nml'"),
+        ("study.h5", "the table of a study, not a result; 'mfv plot' draws it"),
         ("no.h5", "No such file or directory"),
     ):
         assert main(["plot", str(tmp_path / name)]) == 2

@@ -141,6 +141,7 @@ def test_a_case_is_printed_though_others_cannot_be_used(tmp_path):
         (("base='base.nml'", "base=''"), 1, "&sweep base='': must not be empty"),
         (("base='base.nml', ", ""), 1, "&sweep: needs base"),
         (("&vary key='friction", "&very key='friction"), 2, "&very: unknown group; did you mean &vary?"),
+        (("&vary key='friction", "&body key='friction"), 2, "&body: a case, not a study; solve it with 'mfv run'"),
         (("spacing='log'", "spacing='logg'"), 3, "&vary 2 spacing='logg': must be 'linear' or 'log'"),
         (("spacing='log'", "spaicng='log'"), 3, "&vary spaicng: unknown key; did you mean spacing?"),
         (("spacing='log'", "count=4"), 3, "count: given twice"),
