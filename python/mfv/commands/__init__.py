@@ -93,12 +93,13 @@ def _as_program(program: str, arguments: list[str]) -> int:
 
 def _overview() -> str:
     """The commands, a line each, and how to begin; the manual page is made from it (docs/man)."""
-    lines = ["usage: mfv COMMAND ...", "", f"Two-dimensional frictional elastic contact, version {__version__}.", "", "Commands:"]
+    about = (f"Two-dimensional frictional elastic contact, version {__version__}.", "'mfv COMMAND --help' explains each command.")
+    lines = ["usage: mfv COMMAND ...", "", *about, "", "Commands:"]
     lines += [f"  {module.NAME:10}{module.HELP}" for module in COMMANDS]
     steps = ("mfv new cylinder.nml", "mfv run cylinder.nml", "mfv plot cylinder.h5")
     meanings = ("write a commented case", "solve it, write cylinder.h5", "draw cylinder.png")
     lines += ["", "First steps:", *(f"  {step:26}{meaning}" for step, meaning in zip(steps, meanings))]
-    return "\n".join([*lines, "", "'mfv COMMAND --help' explains each command."])
+    return "\n".join(lines)
 
 
 def _parser() -> argparse.ArgumentParser:
