@@ -481,6 +481,17 @@ def test_a_table_is_drawn(tmp_path, capsys, monkeypatch):
     ):
         assert main(["plot", "study.nc", *options]) == INPUT
         assert words.split("; did")[0] in capsys.readouterr().err
+    (tmp_path / "single.nml").write_text("&sweep base='pad.nml' /\n&vary key='scene%coupling', values='none' /\n")
+    assert main(["study", "single.nml"]) == COMPLETE
+    for options, words in (
+        (
+            [],
+            "none of cycle_dissipation, dissipation, lower_tension, contact_length, peak_pressure, approach varies; name a column",
+        ),
+        (["--column", "approach"], "the table has no axis of numbers to draw over"),
+    ):
+        assert main(["plot", "single.nc", *options]) == INPUT
+        assert words in capsys.readouterr().err
 
 
 def test_the_study_in_the_help_is_one(tmp_path):
