@@ -35,7 +35,10 @@ def become(name: str, arguments: list[str]) -> None:
     program = find_program(name)
     for ignored in (signal.SIGPIPE, signal.SIGXFSZ):  # by Python, and a program inherits what is ignored
         signal.signal(ignored, signal.SIG_DFL)
-    os.execv(program, [name, *arguments])
+    try:
+        os.execv(program, [name, *arguments])
+    except OSError as error:  # without the name of the program
+        raise OSError(error.errno, error.strerror, str(program)) from None
 
 
 def _command(name: str) -> None:
@@ -43,7 +46,14 @@ def _command(name: str) -> None:
     try:
         become(name, sys.argv[1:])
     except (LibraryNotFound, OSError) as error:
-        sys.exit(f"{name}: {error}")
+        sys.exit(f"{name}: {message_of(error)}")
+
+
+def message_of(error: Exception) -> str:
+    """The text of an error; of one of the system, file and reason without its number."""
+    if isinstance(error, OSError) and error.filename and error.strerror:
+        return f"{os.fsdecode(error.filename)}: {error.strerror}"
+    return str(error)
 
 
 mfv_run = functools.partial(_command, "mfv_run")

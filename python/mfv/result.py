@@ -275,6 +275,8 @@ def read(path: str | os.PathLike[str]) -> Result:
         why = "not a result file of MFV; it is not an HDF5 file"
         if os.fspath(path).endswith(".nml"):
             why = "a case, not a result; solve it first with 'mfv run', which writes the result"
+        elif os.fspath(path).endswith(".csv"):
+            why = "not a result; for the table of a study write NetCDF: 'mfv study STUDY.nml' gives STUDY.nc"
         raise NotAResult(None, f"{path}: {why}")
     try:
         with h5py.File(path, "r") as file:
@@ -287,6 +289,8 @@ def read(path: str | os.PathLike[str]) -> Result:
         raise NotAResult(None, f"{path}: an HDF5 file, but not a result file of MFV")
     missing = [f"the group {name}" for name in GROUPS if name not in groups]
     missing += [f"the attribute {name}" for name in TEXTS if name not in texts]
+    if missing and "cases" in texts:
+        raise NotAResult(None, f"{path}: the table of a study, not a result; 'mfv plot' draws it and 'mfv info' lists its columns")
     if missing:
         raise NotAResult(None, f"{path}: not a result file of MFV; missing: {', '.join(missing)}")
     if fault := _fault(groups):

@@ -46,6 +46,11 @@ def run(folder: Path, text: str) -> subprocess.CompletedProcess[str]:
             PAD.replace("'disk', radius=127", "'profile', file=data/scan.txt") + PRESS,
             "ended &body (write numbers without units, texts with /",
         ),
+        (PAD + "&step normal_force=500 # pressed\n/\n", "one value expected, found 3; a comment begins with !"),
+        (PAD + "&friction law='coulomb', mu=0.5 # dry\n/\n" + PRESS, "must be a number at least 0; a comment begins with !"),
+        (PAD + "&friction law=coulomb, mu=0.5 /\n" + PRESS, "law=coulomb: must be 'none', 'coulomb', 'static_kinetic', "),
+        (PAD + "&friction law=coulomb, mu=0.5 /\n" + PRESS, "'weakening' or 'dahl', between quotes"),
+        ("&sweep base='pad.nml' /\n", "&sweep: unknown group; this is a study: solve it with 'mfv study'"),
         (PAD + "&step normal_force=500, cycles=2 x /\n", "one value expected, found 2; write numbers without units"),
     ],
 )

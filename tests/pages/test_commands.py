@@ -527,10 +527,10 @@ def test_run_ends_by_the_signals_of_the_program(tmp_path: Path) -> None:
     started.send_signal(signal.SIGINT)
     out, _ = started.communicate(timeout=60)
     assert started.returncode == 130 and b"interrupted" in out
-    shell = f"{' '.join(COMMAND_LINE)} run --keys | true; exit ${{PIPESTATUS[0]}}"
-    direct = f"{MFV_RUN} --keys | true; exit ${{PIPESTATUS[0]}}"
-    codes = [subprocess.run(["bash", "-c", line], capture_output=True).returncode for line in (shell, direct)]
-    assert codes[0] == codes[1]
+    closed = "(sleep 0.3; exec {}) | true; exit ${{PIPESTATUS[0]}}"  # the reader has ended before the first line
+    commands = (f"{' '.join(COMMAND_LINE)} run --keys", f"{MFV_RUN} --keys")
+    codes = [subprocess.run(["bash", "-c", closed.format(line)], capture_output=True).returncode for line in commands]
+    assert codes == [128 + signal.SIGPIPE] * 2
     shown = shown_on_a_terminal([*COMMAND_LINE, "run", "--estimate", str(PROJECT / "examples/cycles.nml")], cwd=tmp_path)
     assert shown == b"" or b"%" in shown
 
@@ -610,8 +610,13 @@ def test_completion_in_the_shell(line: str, expected: set[str], tmp_path: Path) 
 def test_what_is_no_result_is_told_in_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     case = tmp_path / "case.nml"
     case.write_text(SHEARED)
+    (tmp_path / "study.csv").write_text("case,outcome\n")
+    with h5py.File(tmp_path / "study.h5", "w") as table:
+        table.attrs.update({"mfv_version": "0.9.0", "cases": 4})
     for name, message in (
         ("case.nml", "a case, not a result; solve it first with 'mfv run'"),
+        ("study.csv", "not a result; for the table of a study write NetCDF: 'mfv study STUDY.nml'"),
+        ("study.h5", "the table of a study, not a result; 'mfv plot' draws it"),
         ("no.h5", "No such file or directory"),
     ):
         assert main(["plot", str(tmp_path / name)]) == 2

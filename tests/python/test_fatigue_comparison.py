@@ -84,7 +84,7 @@ def test_predictions_are_those_of_the_functions(series):
     k = fatigue.findley_constant(1.0, 1.0 / math.sqrt(3.0))
     value = fatigue.findley(fatigue.averaged_cycle(result, x, length, method="point"), k=k).maximum.value
     assert series[1].lives["Findley", "point"] == pytest.approx(fatigue.life(value, lambda n: curve.findley(n, k=k)), rel=1e-3)
-    assert series[1].half_width == pytest.approx(result.summary.edge_half_width)
+    assert series[1].half_width == pytest.approx(result.summary.contact_half_width)
     small, _, large = series
     for parameter in PARAMETERS:
         assert small.lives[parameter, "hot spot"] == pytest.approx(large.lives[parameter, "hot spot"], rel=1e-3)
@@ -158,7 +158,10 @@ def test_bad_rows_are_named(change, words, tmp_path):
         (table({}).replace("pad_radius [mm]", "pad_radius [m]"), "column pad_radius is in m; it must be in mm"),
         (table({}).replace("pad_radius [mm]", "pad_radus"), "unknown column 'pad_radus'; did you mean pad_radius?"),
         (table({}).replace("torsion_ratio", "mu"), "column mu is given twice"),
-        (table({}).replace("made up", "made up,1"), "27 values under 26 columns"),
+        (table({}).replace("made up", "made up,1"), "27 values under 26 columns; write decimals with a point"),
+        (table({}, {"mu": "x"}).replace("made up", '"made\n\nup"', 1), ":5: mu='x': must be a number"),
+        (table({"source": "x" * 200000}), ":2: not a row of a table: field larger than field limit"),
+        (table().rstrip() + "\n" + 25 * "," + "\n", "no tests; 'mfv fatigue --new FILE.csv' writes a table"),
         (table({}, {"test": 1}), ":3: test '1' is there twice"),
         ("", "no tests; 'mfv fatigue --new FILE.csv' writes a table"),
         ("test,source\n1,x\n", "column pad_radius [mm] is missing"),
@@ -172,6 +175,19 @@ def test_bad_tables_are_named(text, words, tmp_path):
     (tmp_path / "tests.csv").write_bytes(table({}).encode("utf-16"))
     with pytest.raises(mfv.errors.InputError, match="not a text file in UTF-8"):
         comparison.read_tests(tmp_path / "tests.csv")
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        ({"bulk_stress": -400, "bulk_ratio": 1, "tangential_force": 1}, "has no tension on the surface of the specimen"),
+        ({"strength_exponent": -90}, "has no predicted life: the curve must be positive and decrease"),
+    ],
+)
+def test_a_test_without_a_prediction_is_named(change, words, tmp_path):
+    (test,) = read(tmp_path / "tests.csv", change)
+    with pytest.raises(mfv.errors.InputError, match=f"tests.csv:2: test '1' {words}"):
+        comparison.predict(test, 31)
 
 
 def test_numbers_that_the_loads_determine(tmp_path):
@@ -192,3 +208,6 @@ def test_semicolons_decimal_commas_comments_and_a_mark(tmp_path):
     (tmp_path / "b.csv").write_text(text, encoding="utf-8")
     found = comparison.read_tests(tmp_path / "b.csv")
     assert found[0].values == expected[0].values and found[0].where.endswith("b.csv:4")
+    # As spreadsheets write it: tabs, and a row of empty cells.
+    (tmp_path / "c.txt").write_text(table(rows, separator="\t") + 25 * "\t" + "\n", encoding="utf-8")
+    assert comparison.read_tests(tmp_path / "c.txt")[0].values == expected[0].values

@@ -115,6 +115,18 @@ else:
     python_path = os.pathsep.join(filter(None, [str(Path(mfv.__file__).parents[1]), os.environ.get("PYTHONPATH")]))
     environment = {**os.environ, "MFV_LIBRARY": str(tmp_path / "nowhere.so"), "PYTHONPATH": python_path}
     subprocess.run([sys.executable, "-c", script], env=environment, check=True)
+    subprocess.run([sys.executable, "-m", "mfv", "info", path], env=environment, check=True, capture_output=True)
+
+
+def test_a_program_that_cannot_be_run_is_named(tmp_path: Path) -> None:
+    """The program beside the library is a file that is not executable."""
+    for name in ("lib/libmfv.so", "bin/mfv_run"):
+        (tmp_path / name).parent.mkdir()
+        (tmp_path / name).touch()
+    environment = {**os.environ, "MFV_LIBRARY": str(tmp_path / "lib/libmfv.so")}
+    environment["PYTHONPATH"] = os.pathsep.join(filter(None, [str(Path(mfv.__file__).parents[1]), os.environ.get("PYTHONPATH")]))
+    done = subprocess.run([sys.executable, "-m", "mfv", "run", MINDLIN], env=environment, capture_output=True, text=True)
+    assert done.returncode == 2 and done.stderr == f"mfv: {tmp_path}/bin/mfv_run: Permission denied\n"
 
 
 # --- cases ---

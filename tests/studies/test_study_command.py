@@ -141,6 +141,7 @@ def test_a_case_is_printed_though_others_cannot_be_used(tmp_path):
         (("base='base.nml'", "base=''"), 1, "&sweep base='': must not be empty"),
         (("base='base.nml', ", ""), 1, "&sweep: needs base"),
         (("&vary key='friction", "&very key='friction"), 2, "&very: unknown group; did you mean &vary?"),
+        (("&vary key='friction", "&body key='friction"), 2, "&body: a case, not a study; solve it with 'mfv run'"),
         (("spacing='log'", "spacing='logg'"), 3, "&vary 2 spacing='logg': must be 'linear' or 'log'"),
         (("spacing='log'", "spaicng='log'"), 3, "&vary spaicng: unknown key; did you mean spacing?"),
         (("spacing='log'", "count=4"), 3, "count: given twice"),
@@ -480,6 +481,17 @@ def test_a_table_is_drawn(tmp_path, capsys, monkeypatch):
     ):
         assert main(["plot", "study.nc", *options]) == INPUT
         assert words.split("; did")[0] in capsys.readouterr().err
+    (tmp_path / "single.nml").write_text("&sweep base='pad.nml' /\n&vary key='scene%coupling', values='none' /\n")
+    assert main(["study", "single.nml"]) == COMPLETE
+    for options, words in (
+        (
+            [],
+            "none of cycle_dissipation, dissipation, lower_tension, contact_length, peak_pressure, approach varies; name a column",
+        ),
+        (["--column", "approach"], "the table has no axis of numbers to draw over"),
+    ):
+        assert main(["plot", "single.nc", *options]) == INPUT
+        assert words in capsys.readouterr().err
 
 
 def test_the_study_in_the_help_is_one(tmp_path):

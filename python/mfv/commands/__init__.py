@@ -9,7 +9,7 @@ import traceback
 
 from .. import __version__
 from .._packages import how_to_install
-from .._programs import become
+from .._programs import become, message_of
 from .._suggestions import suggestion
 from ..errors import MfvError
 from . import animate, compare, fatigue, identify, info, new, plot, profile, report, run, stress, study
@@ -67,7 +67,7 @@ def main(arguments: list[str] | None = None) -> int:
         _give_up_output()
         return UNUSABLE
     except (MfvError, OSError, ValueError) as error:
-        print(f"mfv: {_with_file(_message(error), options)}", file=sys.stderr)
+        print(f"mfv: {_with_file(message_of(error), options)}", file=sys.stderr)
         _give_up_output()
         return UNUSABLE
     except ModuleNotFoundError as error:
@@ -87,18 +87,19 @@ def _as_program(program: str, arguments: list[str]) -> int:
     try:
         become(program, arguments)
     except (MfvError, OSError) as error:
-        print(f"mfv: {error}", file=sys.stderr)
+        print(f"mfv: {message_of(error)}", file=sys.stderr)
     return UNUSABLE
 
 
 def _overview() -> str:
     """The commands, a line each, and how to begin; the manual page is made from it (docs/man)."""
-    lines = ["usage: mfv COMMAND ...", "", f"Two-dimensional frictional elastic contact, version {__version__}.", "", "Commands:"]
+    about = (f"Two-dimensional frictional elastic contact, version {__version__}.", "'mfv COMMAND --help' explains each command.")
+    lines = ["usage: mfv COMMAND ...", "", *about, "", "Commands:"]
     lines += [f"  {module.NAME:10}{module.HELP}" for module in COMMANDS]
     steps = ("mfv new cylinder.nml", "mfv run cylinder.nml", "mfv plot cylinder.h5")
     meanings = ("write a commented case", "solve it, write cylinder.h5", "draw cylinder.png")
     lines += ["", "First steps:", *(f"  {step:26}{meaning}" for step, meaning in zip(steps, meanings))]
-    return "\n".join([*lines, "", "'mfv COMMAND --help' explains each command."])
+    return "\n".join(lines)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -142,13 +143,6 @@ def _give_up_output() -> None:
             sys.stdout.flush()
         except OSError:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _message(error: Exception) -> str:
-    """The text of an error; of one of the system, file and reason without its number."""
-    if isinstance(error, OSError) and error.filename and error.strerror:
-        return f"{os.fsdecode(error.filename)}: {error.strerror}"
-    return str(error)
 
 
 def _with_file(message: str, options: argparse.Namespace) -> str:

@@ -1,4 +1,4 @@
-"""python -m mfv identify: parameters of a scene from measured loops."""
+"""mfv identify: parameters of a scene from measured loops."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from .._files import PICTURES, target, written
-from ..errors import InputError
+from ..errors import MfvError
 from ..identify.priors import NAMES, Priors
 from ..scene import Scene
 from .completion import complete_files
@@ -56,7 +56,7 @@ def _prior(text: str) -> tuple[str, float]:
     try:
         Priors(**{name.strip(): float(value)})
         return name.strip(), float(value)
-    except (TypeError, ValueError, InputError):
+    except (TypeError, ValueError, MfvError):
         raise argparse.ArgumentTypeError(
             f"must be NAME=WIDTH such as slack=0.02 with NAME {', '.join(NAMES)}, not '{text}'"
         ) from None

@@ -14,9 +14,10 @@ from .shared import add_output, add_result
 NAME, HELP = "plot", "draw a result"
 
 DESCRIPTION = """\
-Draw a result in up to three panels: pressure over x; shear traction over x with stick and slip zones and the friction
-limits (without friction: the deformed surfaces of both bodies); tangential force over shift with numbered step ends
-(if the load history has a tangential force). Points are computed values, lines are closed forms if the file has any.
+Draw a result: pressure over x; shear traction over x with stick and slip zones and the friction limits (without friction:
+the deformed surfaces of both bodies); tangential force over shift with numbered step ends, with cycles also without its
+linear part; with a bulk stress the stress along the surface; with stress_at the tension over the last cycle. Points are
+computed values, lines are closed forms if the file has any.
 Of the table of a study (study.nc) draw a column over an axis; hollow markers are in doubt, see the column warnings.
 """
 

@@ -170,7 +170,7 @@ def columns_in_markdown() -> str:
 
 
 def read_tests(path: str | os.PathLike[str]) -> list[PadTest]:
-    """The tests of a text file with columns separated by commas, or by semicolons with decimal commas, under a line with their names.
+    """The tests of a text file with columns separated by commas, or by semicolons or tabs with decimal commas, under a line with their names.
 
     Raises OSError; InputError, which names file, line, column and value.
     """
@@ -180,23 +180,39 @@ def read_tests(path: str | os.PathLike[str]) -> list[PadTest]:
             numbered = [(number, line) for number, line in enumerate(file, start=1) if line.strip() and not line.startswith("#")]
     except UnicodeDecodeError as error:
         raise input_error(f"{name}: not a text file in UTF-8 (byte {error.start + 1})") from None
-    if len(numbered) < 2:
+    head = numbered[0][1] if numbered else ""
+    separator = next((one for one in ("\t", ";") if one in head and "," not in head), ",")
+    rows = _rows(name, numbered, separator)
+    if len(rows) < 2:
         raise input_error(f"{name}: no tests; 'mfv fatigue --new FILE.csv' writes a table to fill in")
-    head = numbered[0][1]
-    separator = ";" if ";" in head and "," not in head else ","
-    rows = csv.reader((line for _, line in numbered), delimiter=separator)
-    names = [_column(name, numbered[0][0], cell.strip()) for cell in next(rows)]
+    names = [_column(name, numbered[0][0], cell.strip()) for cell in rows[0][1]]
     for column, about in COLUMNS.items():
         if column not in names and about.default is None:
             raise input_error(f"{name}:{numbered[0][0]}: column {label(column)} is missing: {about.meaning}")
     for column in names:
         if names.count(column) > 1:
             raise input_error(f"{name}:{numbered[0][0]}: column {column} is given twice")
-    tests = [_test(f"{name}:{line}", names, row, separator) for (line, _), row in zip(numbered[1:], rows)]
+    tests = [_test(f"{name}:{line}", names, row, separator) for line, row in rows[1:]]
     for place, test in enumerate(tests):
         if any(other["test"] == test["test"] for other in tests[:place]):
             raise input_error(f"{test.where}: test '{test['test']}' is there twice; give every row a name of its own")
     return tests
+
+
+def _rows(file: str, numbered: Sequence[tuple[int, str]], separator: str) -> list[tuple[int, list[str]]]:
+    """The cells of every row that is not empty and the line in which it begins; a text between quotes may extend over lines.
+    Raises InputError."""
+    reader = csv.reader((line for _, line in numbered), delimiter=separator)
+    rows = []
+    while reader.line_num < len(numbered):
+        line = numbered[reader.line_num][0]
+        try:
+            row = next(reader)
+        except csv.Error as error:
+            raise input_error(f"{file}:{line}: not a row of a table: {error}") from None
+        if any(cell.strip() for cell in row):
+            rows.append((line, row))
+    return rows
 
 
 def _column(file: str, line: int, cell: str) -> str:
@@ -213,14 +229,19 @@ def _column(file: str, line: int, cell: str) -> str:
 def _test(where: str, names: Sequence[str], row: Sequence[str], separator: str) -> PadTest:
     """A test from its cells. Raises InputError."""
     if len(row) != len(names):
-        raise input_error(f"{where}: {len(row)} values under {len(names)} columns")
+        advice = (
+            "; write decimals with a point, and texts with commas between quotes"
+            if len(row) > len(names) and separator == ","
+            else ""
+        )
+        raise input_error(f"{where}: {len(row)} values under {len(names)} columns{advice}")
     cells = {name: cell.strip() for name, cell in zip(names, row)}
     values: dict[str, Any] = {}
     for name, column in COLUMNS.items():
         text = cells.get(name, "") or (column.default or "")
         if not text and column.default is None:
             raise input_error(f"{where}: {label(name)} is empty: {column.meaning}")
-        values[name] = _value(where, name, text.replace(",", ".") if separator == ";" and column.kind != "text" else text)
+        values[name] = _value(where, name, text.replace(",", ".") if separator != "," and column.kind != "text" else text)
     if values["normal_force"] is None and values["peak_pressure"] is None:
         raise input_error(f"{where}: needs normal_force or peak_pressure")
     for name in ("youngs_modulus", "poisson_ratio"):
@@ -307,18 +328,24 @@ def scene(test: PadTest, nodes: int = 101) -> Scene:
 def predict(test: PadTest, nodes: int = 101) -> Prediction:
     """The lives of a test by every parameter at every place: at the largest tension of the surface over the cycle, and by the point, area
     and line methods below. Raises MfvError, with the row, if it cannot be solved. Needs scipy."""
+    about = f"{test.where}: test '{test['test']}'"
     try:
         result = scene(test, nodes).run(check=True)
     except MfvError as error:
-        raise input_error(f"{test.where}: test '{test['test']}' cannot be solved: {error.message}") from None
-    x = float(result.observables.largest_lower_tension_x)
-    lives = {
-        (parameter, place): value
-        for place in PLACES
-        for parameter, value in _lives(test, _cycle(result, x, place, test.critical_length)).items()
-    }
+        raise input_error(f"{about} cannot be solved: {error.message}") from None
+    x = float(result.observables.get("largest_lower_tension_x", math.nan))
+    if not math.isfinite(x):
+        raise input_error(f"{about} has no tension on the surface of the specimen over the cycle, so no hot spot: check its loads")
+    try:
+        lives = {
+            (parameter, place): value
+            for place in PLACES
+            for parameter, value in _lives(test, _cycle(result, x, place, test.critical_length)).items()
+        }
+    except ValueError as error:
+        raise input_error(f"{about} has no predicted life: {error}") from None
     notes = (*test.notes, *result.attributes.get("warnings", "").splitlines())
-    return Prediction(PadTest(test.values, test.where, notes), float(result.summary.edge_half_width), lives)
+    return Prediction(PadTest(test.values, test.where, notes), float(result.summary.contact_half_width), lives)
 
 
 def _cycle(result: Result, x: float, place: str, length: float) -> StressCycle:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .. import tables
-from ..errors import InputError, input_error
+from ..errors import MfvError, input_error
 from .loop import Loop
 
 #: Names of the columns of a table of measured loops, in lower case, and what they stand for.
@@ -115,7 +115,7 @@ def _times(column: tables.Column | None, rows: Any) -> np.ndarray | None:
         return None
     try:
         times = column.numbers()[rows]
-    except InputError:
+    except MfvError:
         return None
     return times if np.all(np.diff(times) > 0.0) else None
 

@@ -45,7 +45,10 @@ def lines(table: xarray.Dataset, column: str | None = None, over: str | None = N
     ]
     columns = [str(name) for name in table.data_vars if table[name].dims == dimensions and table[name].dtype.kind in "biuf"]
     varied = [name for name in numeric if name in table.coords]
-    name = _chosen(column, columns, [one for one in USUAL if one in columns and _varies(table[one])], "column")
+    varying = [one for one in USUAL if one in columns and _varies(table[one])]
+    if column is None and not varying:
+        raise ValueError(f"none of {', '.join(USUAL)} varies; name a column, which 'mfv info' lists")
+    name = _chosen(column, columns, varying, "column")
     usual = sorted(varied, key=lambda one: table[one].size, reverse=True)
     along = _chosen(over, varied, usual, "axis of numbers")
     (dimension,) = table[along].dims
@@ -84,7 +87,7 @@ def _chosen(given: str | None, known: list[str], usual: list[str], kind: str) ->
     if given is not None and given not in known:
         raise ValueError(f"no {kind} '{given}' in the table{suggestion(given, known)}")
     if given is None and not usual:
-        raise ValueError(f"the table has no {kind} to draw; 'mfv info' lists its columns")
+        raise ValueError(f"the table has no {kind} to draw over; 'mfv info' lists its columns")
     return usual[0] if given is None else given
 
 

@@ -184,6 +184,8 @@ class _Reader:
 
     def _check_groups(self) -> None:
         for group in self.groups:
+            if group.name in ("body", "scene"):
+                self._fail(group.line, f"&{group.name}: a case, not a study; solve it with 'mfv run', or name it as base in &sweep")
             if group.name not in KEYS:
                 self._fail(group.line, f"&{group.name}: unknown group{suggestion(group.name, KEYS, '&')}")
             for key in group.lines:

@@ -17,6 +17,9 @@ module mfv_key_reader
    character(*), parameter :: decimal_point = '; write decimals with a point'
    !> Fault of a value that acts through friction only.
    character(*), parameter :: needs_friction = 'needs a &friction law with a coefficient above 0'
+   character(*), parameter :: comment_mark = '; a comment begins with !'
+   !> Groups of a study, which is no case.
+   character(*), parameter :: groups_of_studies = ' sweep vary '
    character(*), parameter :: words_for_true = ' .true. t true .t. ', words_for_false = ' .false. f false .f. '
 
    !> A parsed text with its catalogue of keys.
@@ -56,6 +59,7 @@ contains
          associate (group => reader%groups(i))
             if (.not. has_word(reader%catalogue%group_list, group%name)) then
                call suggest(group%name, reader%catalogue%groups(), '&', why)
+               if (has_word(groups_of_studies, group%name)) why = "; this is a study: solve it with 'mfv study'"
                call fail(reader, group%line, '&'//shortened(group%name)//': unknown group'// &
                          why//'; groups are '//reader%catalogue%group_list, error)
                return
@@ -158,6 +162,8 @@ contains
          why = 'one value expected, found '//to_text(size(entry%values))
          if (key%kind == kind_real .and. has_decimal_comma(entry)) then
             why = why//decimal_point
+         else if (has_number_sign(entry)) then
+            why = why//comment_mark
          else if (any(key%kind == [kind_integer, kind_real]) .and. starts_with_letter(entry%values(2)%text)) then
             why = why//'; write numbers without units'
          end if
@@ -167,7 +173,20 @@ contains
       why = 'must be '//why
       if (key%unit /= '') why = why//' ('//key%unit//')'
       if (.not. reasonable) why = why//'; '//reasonable_sizes
+      if (has_number_sign(entry)) then
+         why = why//comment_mark
+      else if (key%kind == kind_choice .and. .not. all(entry%is_quoted)) then
+         why = why//', between quotes'
+      end if
    end subroutine find_fault
+
+   !> Whether the values end in a comment that begins with #, as in other languages.
+   pure logical function has_number_sign(entry)
+      type(entry_type), intent(in) :: entry
+      integer :: i
+
+      has_number_sign = any([(.not. entry%is_quoted(i) .and. index(entry%values(i)%text, '#') == 1, i=1, size(entry%values))])
+   end function has_number_sign
 
    !> Whether the values may be a single number with a decimal comma.
    pure logical function has_decimal_comma(entry)

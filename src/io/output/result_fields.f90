@@ -358,7 +358,7 @@ contains
       if (simulation%contact%model%scene%wear%acts()) &
          call list%add('wear_depth', state%worn, along_nodes, 'length', 'depth worn off both surfaces together')
       call find_edges_at_nodes(simulation%contact%model, state, contact_edge, stick_edge)
-      call list%add('contact_edge', contact_edge, along_nodes, 'length', 'edges of contact'//between_nodes)
+      call list%add('contact_edge', contact_edge, along_nodes, 'length', 'edges of contact'//where_from)
       if (simulation%contact%model%tangential) call list%add('stick_edge', stick_edge, along_nodes, 'length', 'edges of stick'// &
                                                              where_from)
    end subroutine add_state
