@@ -54,8 +54,10 @@ class Loop:
         rows = self.tangential_force.size
         if self.tangential_force.ndim != 1 or self.shift.shape != (rows,) or rows < 5:
             raise input_error(f"{self.name}: needs two columns of equal length with at least 5 rows, tangential_force and shift")
-        if not (np.isfinite(self.tangential_force).all() and np.isfinite(self.shift).all() and np.isfinite(pressing).all()):
-            raise input_error(f"{self.name}: the columns must be finite numbers; remove the rows with gaps")
+        is_gap = ~(np.isfinite(self.tangential_force) & np.isfinite(self.shift))
+        if is_gap.any() or not np.isfinite(pressing).all():
+            where = f", the first is row {np.argmax(is_gap) + 1}" if is_gap.any() else ""
+            raise input_error(f"{self.name}: the columns must be finite numbers; remove the rows with gaps{where}")
         pressing = pressing[~far_from_neighbours(pressing)[1]]
         self.normal_force = float(pressing.mean())
         if not self.normal_force > 0.0 or np.std(pressing) > 0.05 * self.normal_force:
