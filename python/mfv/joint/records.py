@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._packages import needed
 from ..identify import Loop
-from ..identify.path import Path, extremes_of, path_of
+from ..identify.path import Path, path_of, smooth_extremes
 from .backbone import Backbone
 from .measurement import Cycle, Measurement
 
@@ -85,28 +85,27 @@ def ring_down(time: ArrayLike, displacement: ArrayLike) -> RingDown:
     """Frequency and damping of a free decay over its amplitude, from the turning points of a record of the `displacement` over the
     `time`. Raises ValueError.
 
-    A constant origin does not matter: an amplitude is half the way between turning points. Turning points are those of a smooth
-    maximum through the rows around them, up to an amplitude of four standard deviations of the noise.
+    A constant origin does not matter: an amplitude is half the way between turning points. Turning points are those of a
+    polynomial through the rows around them, up to an amplitude of four standard deviations of the noise.
     """
     at, column = np.asarray(time, dtype=float), np.asarray(displacement, dtype=float)
     if at.ndim != 1 or at.shape != column.shape or at.size < 20 or not (np.isfinite(at).all() and np.isfinite(column).all()):
         raise ValueError("a ring-down needs two columns of at least 20 finite numbers, time and displacement")
     if np.any(np.diff(at) <= 0.0):
         raise ValueError("the times of a ring-down must increase")
-    found = extremes_of(column, at)
+    found = smooth_extremes(column, at)
     if len(found) < 4:
         raise ValueError(f"the record has {len(found)} turning points; a ring-down needs at least 4")
-    value, error, when = (np.array(each) for each in zip(*found))
-    half, spread = 0.5 * np.abs(np.diff(value)), 0.5 * np.hypot(error[1:], error[:-1])
+    value, error, when, when_error = (np.array(each) for each in zip(*found))
+    half = 0.5 * np.abs(np.diff(value))
     period = when[2:] - when[:-2]
-    # A turning point is known in time to about the angle by which its error moves the maximum of a sine.
-    angle = np.hypot(error[2:] / half[1:], error[:-2] / half[:-1])
+    # The turning point in the middle of a period changes both halves alike.
     return RingDown(
         np.sqrt(half[1:] * half[:-1]),
         1.0 / period,
         np.log(half[:-1] / half[1:]) / np.pi,
-        angle / (2.0 * np.pi) / period,
-        np.hypot(spread[1:] / half[1:], spread[:-1] / half[:-1]) / np.pi,
+        np.hypot(when_error[2:], when_error[:-2]) / period**2,
+        0.5 * np.hypot(error[2:] / half[1:], error[:-2] / half[:-1]) / np.pi,
     )
 
 
