@@ -9,7 +9,6 @@ import functools
 import hashlib
 import math
 import os
-import re
 import time
 from collections.abc import Iterator, Sequence
 from ctypes import byref, c_double, c_int, c_void_p
@@ -49,24 +48,6 @@ FILE_KEYS = ("body(1)%file", "body(2)%file", "friction%mu_file")
 
 #: What precedes the names of quantities in a warning about the mesh.
 NOT_RESOLVED = "not resolved:"
-
-#: Observables that are resolved if another quantity is, and dimensionless ones with their uncertain factor.
-NAMED_AS = {
-    "contact_centre": "contact_length",
-    "normal_force": "approach",
-    **dict.fromkeys(("tangential_force", "shift_drift", "creepage"), "shift"),
-    **dict.fromkeys(("worn_area", "wear_depth"), "dissipation"),
-}
-FACTORS = {
-    "half_width_number": "contact_half_width",
-    "pressure_number": "peak_pressure",
-    "shear_number": "peak_shear",
-    "force_number": "force_amplitude",
-    "shift_number": "shift_amplitude",
-    "dissipation_number": "cycle_dissipation",
-    "stiffness_number": "tangential_stiffness",
-    "creepage_number": "creepage",
-}
 
 _NAN = float("nan")
 
@@ -264,7 +245,7 @@ def _kept(case: Case, status: int, job: Job) -> Solved:
     solved.observables = [_real(case, path) for path in _observable_paths()]
     counts["nodes"] = case._count("mesh/x")
     solved.warnings = case._attribute("warnings")
-    names = not_resolved(solved.warnings)
+    names = case._attribute("unresolved").split()
     there = [name for name, value in zip(observables(), solved.observables) if not math.isnan(value)]
     solved.unresolved = " ".join(name for name in there if name in names)
     solved.error_estimate = _attribute(case, "error_estimate")
@@ -290,25 +271,6 @@ def _observable_paths() -> list[bytes]:
 @functools.cache
 def _bar_paths() -> list[bytes]:
     return [text_for(f"error_estimate/{name}_error") for name in observables()]
-
-
-def not_resolved(warnings: str) -> list[str]:
-    """The observables that warnings call not resolved, by their own names or by those of the quantities and groups that stand for them
-    (mfv_resolution, `named_as`)."""
-    words = {word for found in re.findall(NOT_RESOLVED + " ([^;]*);", warnings) for word in found.split(", ")}
-    return [name for name in observables() if words.intersection(_stand_for(name))]
-
-
-@functools.cache
-def _stand_for(observable: str) -> frozenset[str]:
-    """What a warning may name in place of an observable, itself included."""
-    name = FACTORS.get(observable, observable)
-    names = {name, NAMED_AS.get(name, name), re.sub("_tension_x$", "_tension", name)}
-    if name.startswith(("largest_", "smallest_")):
-        names.add("extremes")
-    elif name.endswith(("_loading", "_reversal", "_return", "_amplitude")) or name == "first_cycle_dissipation":
-        names.add("turning_points")
-    return frozenset(names)
 
 
 def _attribute(case: Case, name: str) -> str:

@@ -7,6 +7,7 @@ module mfv_resolution
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_approach
    use mfv_node_status, only: in_contact
+   use mfv_observables, only: observable_count, observables
    use mfv_profile_sampling, only: find_missed, negligible_pressure, pressure_of_wave
    use mfv_simulation, only: simulation_type
    use mfv_slip_zones, only: contact_interval, hidden_width_at_edge, needed_mesh, nodes_at_edge, resolved_nodes, slip_record_type
@@ -15,7 +16,7 @@ module mfv_resolution
    implicit none
    private
    public :: find_unresolved, unresolved_type, add_unresolved, is_unresolved, all_quantities, undersampling, poorest_patch, &
-             fewest_patch_nodes
+             fewest_patch_nodes, unresolved_observables
 
    !> What a mesh does not resolve.
    type :: unresolved_type
@@ -48,31 +49,58 @@ contains
    subroutine add_unresolved(unresolved, quantities, why, remedy)
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
       character(*), intent(in) :: quantities, why, remedy
-      character(:), allocatable :: list, names
-      integer :: i
+      character(:), allocatable :: list, names, rest, word
 
       list = ''
-      ! A variable: gfortran 12 keeps the length of an untrimmed text in trim() within these constructors.
-      names = trim(quantities)
-      do i = 1, len_trim(quantities)
-         if (quantities(i:i) == ' ') list = list//','
-         list = list//quantities(i:i)
+      names = ''
+      rest = trim(quantities)//' '
+      do while (rest /= '')
+         word = rest(:index(rest, ' ') - 1)
+         rest = rest(len(word) + 2:)
+         if (has_word(names, word)) cycle
+         names = names//' '//word
+         list = list//', '//word
       end do
-      unresolved = [unresolved, unresolved_type(names, why//'; not resolved: '//list//'; '//remedy)]
+      ! Variables: gfortran 12 keeps the length of an untrimmed text in trim() within these constructors.
+      names = names(2:)
+      unresolved = [unresolved, unresolved_type(names, why//'; not resolved: '//list(3:)//'; '//remedy)]
    end subroutine add_unresolved
 
    !> Whether an observable is among those that are not resolved, by its name or by that of a quantity or a group that it belongs
    !> to.
-   pure logical function is_unresolved(unresolved, name)
+   pure recursive logical function is_unresolved(unresolved, name) result(is_there)
       type(unresolved_type), intent(in) :: unresolved(:)
       character(*), intent(in) :: name
       integer :: i
 
-      is_unresolved = any([(has_word(unresolved(i)%quantities, name) .or. &
-                            has_word(unresolved(i)%quantities, trim(named_as(name))), i=1, size(unresolved))])
+      is_there = any([(has_word(unresolved(i)%quantities, name), i=1, size(unresolved))])
+      if (.not. is_there .and. named_as(name) /= '') is_there = is_unresolved(unresolved, trim(named_as(name)))
    end function is_unresolved
 
-   !> The quantity or group whose name stands for an observable where quantities are not resolved, padded with blanks.
+   !> Names of the observables that the mesh of a simulation, or a coarser one of its error bars, does not resolve, separated by
+   !> blanks.
+   function unresolved_observables(simulation) result(names)
+      type(simulation_type), intent(in) :: simulation
+      character(:), allocatable :: names
+      type(unresolved_type), allocatable :: unresolved(:)
+      integer :: place
+
+      call find_unresolved(simulation, unresolved)
+      if (allocated(simulation%estimate)) then
+         do place = 1, size(simulation%estimate%bar)
+            if (.not. simulation%estimate%bar(place)%resolved) &
+               call add_unresolved(unresolved, observables(place)%name, '', '')
+         end do
+      end if
+      names = ''
+      do place = 1, observable_count
+         if (is_unresolved(unresolved, trim(observables(place)%name))) names = names//' '//trim(observables(place)%name)
+      end do
+      names = names(min(2, len(names) + 1):)
+   end function unresolved_observables
+
+   !> The quantity or group whose name stands for an observable where quantities are not resolved, padded with blanks: for a
+   !> dimensionless number its uncertain factor.
    pure function named_as(name)
       character(*), intent(in) :: name
       character(len=20) :: named_as
@@ -80,6 +108,18 @@ contains
       select case (name)
       case ('contact_centre')
          named_as = 'contact_length'
+      case ('half_width_number')
+         named_as = 'contact_half_width'
+      case ('pressure_number', 'shear_number')
+         named_as = 'peak_'//name(:len(name) - len('_number'))
+      case ('force_number', 'shift_number')
+         named_as = name(:len(name) - len('_number'))//'_amplitude'
+      case ('dissipation_number')
+         named_as = 'cycle_dissipation'
+      case ('stiffness_number')
+         named_as = 'tangential_stiffness'
+      case ('creepage_number')
+         named_as = 'creepage'
       case ('normal_force')
          named_as = 'approach'
       case ('tangential_force', 'shift_drift', 'creepage')

@@ -18,6 +18,7 @@ module mfv_result_fields
    use mfv_motions, only: motions, motion_count => user_motions, motion_approach, motion_shift, motion_rotation, bulk_motions
    use mfv_node_status, only: event_names, in_contact, node_status_names
    use mfv_observables, only: observable_count, observable_place, observables, observables_of
+   use mfv_resolution, only: unresolved_observables
    use mfv_scene, only: algorithm_names, stepping_leap, stepping_names
    use mfv_simulation, only: history_none, mark_cycle_start, mark_loading, mark_return, mark_reversal, &
                              sensitivity_type, simulation_type
@@ -210,6 +211,7 @@ contains
       call add('outcome', status_outcome(simulation%outcome))
       call add('message', simulation%message)
       call add('warnings', text)
+      call add('unresolved', unresolved_observables(simulation))
       call add('input', case%text)
       call add('input_file', case%source)
       call add('options', trim(case%options))
