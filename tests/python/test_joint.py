@@ -361,6 +361,16 @@ def test_records_that_are_none_are_refused() -> None:
             joint.from_loops(loops)
     with pytest.raises(mfv.errors.InputError, match="loop 1: needs two columns of equal length"):
         joint.from_loops([(shift, force[1:])])
+    for loop, message in (
+        ((shift, -force), "loop 1: the force falls where the displacement grows; change the sign of one of them"),
+        ((shift[::-1], force[::-1]), "loop 1: the loop runs the wrong way round, friction would do negative work"),
+        ((force, shift), "loop 1: the loop runs the wrong way round"),
+        ((shift, 0.0 * force), "loop 1: the force does not change"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            joint.from_loops([loop])
+    with pytest.raises(mfv.errors.InputError, match="loop 1: the driven column, shift, does not change"):
+        joint.from_loops([(0.0 * shift, force)])
     time = np.linspace(0.0, 3.0, 300)
     for columns, message in (
         ((time, time), "0 turning points; a ring-down needs at least 4"),

@@ -106,7 +106,7 @@ class Loop:
         return self.tangential_force if self.drive == "tangential_force" else self.shift
 
     @property
-    def _is_reversed(self) -> bool:
+    def is_reversed(self) -> bool:
         """Whether the shift falls where the force grows."""
         force, shift = self.tangential_force - self.tangential_force.mean(), self.shift - self.shift.mean()
         return float(force @ shift) < 0.0
@@ -114,9 +114,9 @@ class Loop:
     def _prepared(self) -> tuple[Loop, Path]:
         """The loop with the sign of the shift that belongs to the force, and with the noise of both columns, estimated where it is not
         given; and the path of its driven column. Raises InputError."""
-        loop = dataclasses.replace(self, shift=-self.shift) if self._is_reversed else self
+        loop = dataclasses.replace(self, shift=-self.shift) if self.is_reversed else self
         path = path_of(loop)
-        if self._is_reversed:
+        if self.is_reversed:
             path.warnings.insert(
                 0,
                 f"{self.name}: shift and tangential force have opposite signs (the loop runs clockwise, it would produce energy): the "

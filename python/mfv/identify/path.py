@@ -97,6 +97,8 @@ def path_of(loop: Loop) -> Path:
     by_force = loop.drive == "tangential_force"
     driven = force if by_force else shift
     amplitude = float(np.ptp(driven))
+    if amplitude == 0.0:
+        raise input_error(f"{loop.name}: the driven column, {loop.drive}, does not change")
     columns = ((force, loop.force_noise), (shift, loop.shift_noise))
     force_noise, shift_noise = (estimated_noise(column, loop.time) if noise is None else noise for column, noise in columns)
     noise = force_noise if by_force else shift_noise
