@@ -129,7 +129,7 @@ def test_a_load_history_from_other_programs(tmp_path: Path) -> None:
     written = "\n".join(f"{row},0;{load}".replace(".", ",") for row, load in enumerate(loads))
     contents = (
         "\ufefftangential_force\n" + "\n".join(map(str, loads)),
-        "# time tangential_force\n" + "\n".join(f"{row}\t{load}" for row, load in enumerate(loads)),
+        "# Time tangential_force\n" + "\n".join(f"{row}\t{load}" for row, load in enumerate(loads)),
         'Test A\n"time";"tangential_force";\n' + written.replace("\n", ";\n") + ";",
     )
     body = Body.disk(0.25, rigid=True)
@@ -140,9 +140,15 @@ def test_a_load_history_from_other_programs(tmp_path: Path) -> None:
         case.output = mfv.Output(states="reversals")
         reached = [float(state.tangential_force) for state in case.run().steps[1:]]
         assert reached == pytest.approx(loads, rel=1e-9)
-    path.write_text("tangential_force;time\n1e-4;0\n;1\n")
-    with pytest.raises(errors.InputError, match="loads.csv:3: must have a value in every column"):
-        case.contact()
+    for content, message in (
+        ("tangential_force;time\n1e-4;0\n;1\n", "loads.csv:3: must have a value in every column"),
+        ("Time;Tangential_Force;tangential_force\n0;1e-4;2e-4\n", "columns 2 and 3 have the same name, Tangential_Force; remove one"),
+        ("Time (s);tangential_force\n0;1e-4\n", r"unknown column 'Time .s.'; columns are normal_force .*, and time, which is ignored"),
+        ("time;tangential_force\n10:30:05;1e-4\n", "loads.csv:2:1: must be two numbers"),
+    ):
+        path.write_text(content)
+        with pytest.raises(errors.InputError, match=message):
+            case.contact()
 
 
 ROWS = [(0.0, 0.0, 100.0), (1.0, 0.5, 100.0), (2.0, 1.0, 100.0), (1.0, 0.75, 100.0), (0.0, 0.25, 100.0)]
