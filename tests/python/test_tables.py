@@ -142,8 +142,14 @@ def test_a_load_history_from_other_programs(tmp_path: Path) -> None:
         assert reached == pytest.approx(loads, rel=1e-9)
     for content, message in (
         ("tangential_force;time\n1e-4;0\n;1\n", "loads.csv:3: must have a value in every column"),
-        ("Time;Tangential_Force;tangential_force\n0;1e-4;2e-4\n", "columns 2 and 3 have the same name, Tangential_Force; remove one"),
-        ("Time (s);tangential_force\n0;1e-4\n", r"unknown column 'Time .s.'; columns are normal_force .*, and time, which is ignored"),
+        (
+            "Time;Tangential_Force;tangential_force\n0;1e-4;2e-4\n",
+            "columns 2 and 3 have the same name, Tangential_Force; remove one",
+        ),
+        (
+            "Time (s);tangential_force\n0;1e-4\n",
+            r"unknown column 'Time .s.'; columns are normal_force .*, and time, which is ignored",
+        ),
         ("time;tangential_force\n10:30:05;1e-4\n", "loads.csv:2:1: must be two numbers"),
     ):
         path.write_text(content)
