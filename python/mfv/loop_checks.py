@@ -32,12 +32,7 @@ def doubts_about(
     """Sentences about what cannot be in a loop, with the likely cause. `turns`: rows at which the driven column reverses; `noise`:
     standard deviations of force and shift; `stiffness`: tangential stiffness of the contact alone and with the rig in series
     [force/length^2], NaN if unknown."""
-    sentences = []
-    if _runs_backwards(force, shift, turns, noise):
-        sentences.append(
-            f"{name}: the loop runs the wrong way round, friction would do negative work: force and shift are exchanged, the rows are "
-            "in reverse order, or the shift was measured before the force"
-        )
+    sentences = about_direction(name, force, shift, turns, noise)
     measured = _stiffness(force, shift, turns)
     alone, with_rig = stiffness
     if measured > _TOO_STIFF * alone:
@@ -57,6 +52,16 @@ def doubts_about(
             "of them only"
         )
     return sentences
+
+
+def about_direction(name: str, force: Array, shift: Array, turns: Sequence[int], noise: tuple[float, float]) -> list[str]:
+    """The sentence about a loop in which friction would do negative work, if it does; arguments as in `doubts_about`."""
+    if not _runs_backwards(force, shift, turns, noise):
+        return []
+    return [
+        f"{name}: the loop runs the wrong way round, friction would do negative work: force and shift are exchanged, the rows are "
+        "in reverse order, or the shift was measured before the force"
+    ]
 
 
 def _runs_backwards(force: Array, shift: Array, turns: Sequence[int], noise: tuple[float, float]) -> bool:

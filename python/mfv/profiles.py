@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import warnings
+from numbers import Real
 from pathlib import Path
 from typing import Any, Literal, NamedTuple, TypedDict
 
@@ -76,6 +77,11 @@ def read(
         raise input_error(f"line: must be 'middle', 'mean' or a number from 1, not {line!r}")
     if along not in ("x", "y"):
         raise input_error(f"along: must be 'x' or 'y', not {along!r}")
+    for key, length in (("spacing", spacing), ("lambda_s", lambda_s), ("lambda_c", lambda_c)):
+        if length is not None and not (isinstance(length, Real) and 0.0 < length < np.inf):
+            raise input_error(f"{key}: must be a positive length in {unit}, not {length!r}")
+    if lambda_s is not None and lambda_c is not None and lambda_s >= lambda_c:
+        raise input_error(f"lambda_s={lambda_s}: must be below lambda_c={lambda_c}, or no wave is left")
     try:
         tables.check_text(path)
         x, height, x_unit, height_unit = tables.read_trace(path)
@@ -89,12 +95,15 @@ def read(
     if x is not None and spacing is not None:
         raise input_error(f"{name}: has positions; remove spacing")
     place: Array = np.asarray(np.arange(height.size) * float(spacing or 0.0) if x is None else x_scale * x)
+    has_place = np.isfinite(place)
+    if not has_place.all():
+        notes.append(f"{name}: {np.sum(~has_place)} of {place.size} points have no position and are omitted")
+        place, height = place[has_place], height[has_place]
     if not np.any(np.isfinite(height)):
         raise input_error(f"{name}: no height has a value")
-    for key, length in (("lambda_s", lambda_s), ("lambda_c", lambda_c)):
-        if length is not None and not 0.0 < length < np.inf:
-            raise input_error(f"{key}: must be a positive length in {unit}, not {length!r}")
     if lambda_s is not None or lambda_c is not None:
+        if place.size < 3:
+            raise input_error(f"{name}: a filter needs at least 3 points; it has {place.size}")
         place, height = _filtered(place, height, lambda_s, lambda_c, notes)
     return Profile(place, -height if outwards else height, unit, notes)
 
@@ -200,8 +209,6 @@ def _sentence(error: Exception) -> str:
 
 def _filtered(x: Array, height: Array, lambda_s: float | None, lambda_c: float | None, notes: list[str]) -> tuple[Array, Array]:
     """Heights without waves shorter than `lambda_s` and longer than `lambda_c`, at equal distances."""
-    given = np.isfinite(x)
-    x, height = x[given], height[given]
     if x[0] > x[-1]:
         x, height = x[::-1], height[::-1]
     steps = np.diff(x)

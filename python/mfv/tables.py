@@ -32,7 +32,10 @@ _OTHER_NAMES = {"micron": "um", "microns": "um", "inch": "in", "mils": "mil"} | 
     for plural in ("", "s")
 }
 
+_BRACKET = re.compile(r"[\[({]\s*([^\[\](){}]+?)\s*[\])}]\s*$")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?", re.ASCII)
+#: A number at the beginning, or before a unit at the end.
+_VALUE = re.compile(r"^[+-]?\.?\d|\s[+-]?[.,]?\d[\d.,]*\s*[A-Za-zµμ]+$", re.ASCII)
 _WHOLE = re.compile(r"\s*[0-9]+\s*")
 _NO_VALUES = ("", "nan", "na", "n/a", "null", "bad", "-", "--", "---", "*", "***")
 _QUOTED = r"\"[^\"]*\"|'[^']*'"
@@ -46,21 +49,38 @@ _START = 2**20
 
 
 def unit_of(text: str) -> str:
-    """The unit that a heading ends with, such as 'mm' in 'x [mm]', 'x (mm)', 'x in mm', 'x / mm', 'Lateral mm'; empty for none."""
-    bracket = re.search(r"[\[({]\s*([^\[\](){}]+?)\s*[\])}]\s*$", text)
+    """The unit that a heading ends with, such as 'mm' in 'x [mm]', 'x (mm)', 'x in mm', 'x / mm', 'x/mm', 'Lateral mm'; empty for none."""
+    bracket = _BRACKET.search(text)
     words = [bracket[1]] if bracket else text.split()[-1:]
-    unit = words[0].replace("µ", "u").replace("μ", "u") if words else ""
+    unit = known_unit(words[0]) if words else ""
+    if not unit and words == text.split():
+        unit = known_unit(words[0].partition("/")[2])
+    return unit
+
+
+def written_unit(text: str) -> str:
+    """The unit that a heading ends with, or what it has in brackets instead, which is not a known unit; empty for none."""
+    bracket = _BRACKET.search(text)
+    return unit_of(text) or (bracket[1].strip("-\u2013 ") if bracket else "")
+
+
+def known_unit(word: str) -> str:
+    """A unit as it is written here; empty for another word."""
+    unit = word.replace("µ", "u").replace("μ", "u")
     unit = _OTHER_NAMES.get(unit.lower(), unit)
     force, per, length = unit.partition("/")
-    known = unit in LENGTHS or (force in FORCES and (length in LENGTHS or not per))
-    return unit if known else ""
+    return unit if unit in LENGTHS or (force in FORCES and (length in LENGTHS or not per)) else ""
 
 
 def name_of(text: str) -> str:
     """A heading without its unit, in lower case."""
-    bare = re.sub(r"[\[({][^\[\](){}]*[\])}]\s*$", "", text).strip()
-    if bare == text.strip() and unit_of(text) and len(text.split()) > 1:
-        bare = re.sub(r"(\s+in|\s*/|\s*,)?\s+\S+$", "", bare)
+    bare = re.sub(r"/?\s*[\[({][^\[\](){}]*[\])}]\s*$", "", text).strip()
+    if bare == text.strip() and unit_of(text):
+        *words, last = bare.split()
+        if not known_unit(last):
+            bare = " ".join([*words, last.partition("/")[0]])
+        elif words:
+            bare = re.sub(r"(\s+in|\s*/|\s*,)?\s+\S+$", "", bare)
     return bare.strip().lower()
 
 
@@ -74,7 +94,7 @@ def factor(unit: str, to: str) -> float:
 
 def _size(unit: str) -> tuple[float, str]:
     """A unit in SI units, and its quantity. Raises InputError."""
-    known = unit_of(unit) or unit
+    known = known_unit(unit) or unit
     force, per, length = known.partition("/")
     if known in LENGTHS:
         return LENGTHS[known], "length"
@@ -253,17 +273,28 @@ def read_trace(path: str | os.PathLike[str]) -> Trace:
         table, fault = np.array([_row(lines[number - 1], 1, True) for number in numbers]), None
     if fault is not None:
         raise input_error(f"{name}:{numbers[fault]}: x must increase from line to line, or decrease")
-    headings = [_headings(line) for line in lines[: start - 1] if _is_heading(line) and not _is_comment(line)]
-    units = next((found for cells in reversed(headings) if any(found := [unit_of(cell) for cell in cells[-columns:]])), [])
-    if columns == 3:
-        units = units[-2:]
-    units = [""] * (2 - len(units)) + units
+    units = _units_of_trace(lines[: start - 1], columns)
     if table.shape[1] == 1:
         return Trace(None, table[:, 0], "", units[-1])
     x = table[:, 0][np.isfinite(table[:, 0])]
     if x.size > 1 and x[0] > x[-1]:
         table = table[::-1]
     return Trace(table[:, 0].copy(), table[:, 1].copy(), units[0], units[1])
+
+
+def _units_of_trace(head: Sequence[str], columns: int) -> list[str]:
+    """The units of positions and heights in the lines before the numbers, or '': of the last heading with a unit for every column, or
+    with one unit; else of a comment. Lines with numbers, such as a cutoff, are no headings."""
+    is_comment = [_is_comment(line) for line in head]
+    for kind in (False, True):
+        texts = [line.lstrip(" \t#!%/") for line, comment in zip(head, is_comment) if comment == kind]
+        for cells in map(_headings, reversed([text for text in texts if _is_heading(text)])):
+            units = [unit_of(cell) for cell in cells]
+            if len(cells) != columns:
+                units = [unit for cell, unit in zip(cells, units) if unit and cell != "in"]
+            if any(units) and len(units) in (1, columns) and not any(_VALUE.search(cell) for cell in cells):
+                return ["", *units][-2:]
+    return ["", ""]
 
 
 def _longest(are_rows: Iterable[bool]) -> int:
@@ -329,7 +360,8 @@ def _disorder(x: Array) -> int | None:
 
 @dataclass
 class Column:
-    """A measured column: what it is called in messages, its unit or '', and its values (numbers, or texts of a file)."""
+    """A measured column: what it is called in messages, its unit as it is written or '', and its values (numbers, or texts of a
+    file)."""
 
     label: str
     unit: str
@@ -360,7 +392,7 @@ def read_columns(path: str | os.PathLike[str], wanted: Names, optional: Sequence
     """
     name, lines = os.fspath(path), _lines(path)
     header, names = _header(name, lines, wanted, optional)
-    places = {meaning: place for meaning, keys in wanted.items() if (place := _place(names, keys)) is not None}
+    places = _chosen(name, names, wanted, optional)
     count = len(names)
     below = [number for number in range(header + 1, len(lines) + 1) if not _is_comment(lines[number - 1])]
     needed = [place for meaning, place in places.items() if meaning not in optional]
@@ -370,11 +402,12 @@ def read_columns(path: str | os.PathLike[str], wanted: Names, optional: Sequence
         return cells is not None and all(_value(cells[place], comma) is not None for place in needed)
 
     comma = sum(is_row(number, True) for number in below[:_SAMPLE]) > sum(is_row(number, False) for number in below[:_SAMPLE])
-    units = [unit_of(heading) for heading in names]
+    units = [written_unit(heading) for heading in names]
     if below and header and not is_row(below[0], comma):  # a line of units
         written = _headings(lines[below[0] - 1])
-        if len(written) == count and all(not cell or unit_of(cell) or cell[0] in "[(-" for cell in written):
-            units = [unit_of(cell) or unit for cell, unit in zip(written, units)]
+        cells_of_units = [written[place] for place in needed] if len(written) == count else ["?"]
+        if all(not cell or unit_of(cell) or cell[0] in "[(-" for cell in cells_of_units):
+            units = [written_unit(cell) or unit for cell, unit in zip(written, units)]
             del below[0]
     if not header:  # columns by number
         while below and not is_row(below[0], comma):
@@ -401,12 +434,31 @@ def read_columns(path: str | os.PathLike[str], wanted: Names, optional: Sequence
     }
 
 
-def _place(names: Sequence[str], keys: Sequence[str] | int) -> int | None:
-    """The place from 0 of a column by its names in lower case, or by its number from 1."""
+def _places(names: Sequence[str], keys: Sequence[str] | int) -> list[int]:
+    """The places from 0 of the columns with the first of the names in lower case that there is, or with a number from 1."""
     if isinstance(keys, int):
-        return keys - 1 if 1 <= keys <= len(names) else None
-    found = [name_of(name) for name in names] + [name.strip().lower() for name in names]
-    return next((found.index(key) % len(names) for key in keys if key in found), None)
+        return [keys - 1] if 1 <= keys <= len(names) else []
+    bare, written = [name_of(name) for name in names], [name.strip().lower() for name in names]
+    return next(
+        ([place for place, each in enumerate(found) if each == key] for key in keys for found in (bare, written) if key in found),
+        [],
+    )
+
+
+def _chosen(label: str, names: Sequence[str], wanted: Names, optional: Sequence[str]) -> dict[str, int]:
+    """The places from 0 of the wanted columns that there are. Raises InputError for a needed one whose name another has too."""
+    result = {}
+    for meaning, keys in wanted.items():
+        places = _places(names, keys)
+        if len(places) > 1 and meaning not in optional:
+            numbers = ", ".join(str(place + 1) for place in places)
+            raise input_error(
+                f"{label}: columns {numbers} have the same name, {names[places[0]]}; choose one by its number, such as "
+                f"columns={{'{meaning}': {places[0] + 1}}}, or rename the others"
+            )
+        if places:
+            result[meaning] = places[0]
+    return result
 
 
 def _header(name: str, lines: Sequence[str], wanted: Names, optional: Sequence[str]) -> tuple[int, list[str]]:
@@ -416,7 +468,7 @@ def _header(name: str, lines: Sequence[str], wanted: Names, optional: Sequence[s
     fewest = len(needed) + 1
     for number, line in enumerate(lines[:_SAMPLE], start=1):
         names = _headings(line)
-        missing = sum(_place(names, keys) is None for keys in needed.values())
+        missing = sum(not _places(names, keys) for keys in needed.values())
         if any(isinstance(keys, int) for keys in needed.values()) and not _is_heading(line):
             continue
         if names and missing < fewest and (not _is_comment(line) or missing == 0):
@@ -434,7 +486,7 @@ def _header(name: str, lines: Sequence[str], wanted: Names, optional: Sequence[s
 
 def missing_columns(label: str, wanted: Names, names: Sequence[str]) -> Exception:
     """The InputError about wanted columns that are not among names."""
-    missing = [str(keys) if isinstance(keys, int) else keys[-1] for keys in wanted.values() if _place(names, keys) is None]
+    missing = [str(keys) if isinstance(keys, int) else keys[-1] for keys in wanted.values() if not _places(names, keys)]
     short = [word.upper() if len(word) == 1 else word for word in missing]
     there = ", ".join(_shown(name) for name in names) or "none"
     return input_error(f"{label}: no column {', '.join(short)}; there are {there}")
@@ -445,10 +497,10 @@ def columns_of(table: Any, label: str, wanted: Names, optional: Sequence[str] = 
     keys = list(table.columns if hasattr(table, "columns") else table)
     names = [str(key) for key in keys]
     needed = {meaning: known for meaning, known in wanted.items() if meaning not in optional}
-    if any(_place(names, known) is None for known in needed.values()):
+    if any(not _places(names, known) for known in needed.values()):
         raise missing_columns(label, needed, names)
-    places = {meaning: place for meaning, known in wanted.items() if (place := _place(names, known)) is not None}
+    places = _chosen(label, names, wanted, optional)
     return {
-        meaning: Column(f"{label}: column {names[place]}", unit_of(names[place]), table[keys[place]])
+        meaning: Column(f"{label}: column {names[place]}", written_unit(names[place]), table[keys[place]])
         for meaning, place in places.items()
     }

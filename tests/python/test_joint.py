@@ -337,6 +337,23 @@ def test_a_ring_down_gives_force_and_dissipation_of_the_element_that_decays() ->
     assert np.max(np.abs(again[1] - exact[1])) < 0.1 * 0.4 * known.largest_slip
 
 
+def test_errors_of_a_ring_down_are_those_of_its_numbers() -> None:
+    """A damped cosine: exact frequency and damping without noise, distances of about a standard error with it."""
+    damping, frequency = 0.01, 5.0 * np.sqrt(1.0 - 1e-4)
+    time = np.linspace(0.0, 4.0, 2000)
+    exact = np.exp(-damping * 10.0 * np.pi * time) * np.cos(2.0 * np.pi * frequency * time + 0.3)
+    decay = joint.ring_down(time, exact)
+    np.testing.assert_allclose(decay.frequency, frequency, rtol=1e-6)
+    np.testing.assert_allclose(decay.damping, damping / np.sqrt(1.0 - damping**2), rtol=1e-4)
+    for noise in (1e-3, 1e-2):
+        records = [exact + noise * np.random.default_rng(seed).standard_normal(2000) for seed in range(6)]
+        decays = [joint.ring_down(time, record) for record in records]
+        of_frequency = np.concatenate([((each.frequency - frequency) / each.frequency_error)[:20] for each in decays])
+        of_damping = np.concatenate([((each.damping - damping) / each.damping_error)[:20] for each in decays])
+        for distances in (of_frequency, of_damping):
+            assert 0.7 < np.sqrt(np.mean(distances**2)) < 1.5 and np.max(np.abs(distances)) < 5.0
+
+
 def test_records_that_are_none_are_refused() -> None:
     shift, force = mindlins_loop(0.5, 0.003, 0)
     for loops, message in (([], "at least one loop"), ([(shift[:100], force[:100])], "loop 1: does not turn")):
@@ -344,6 +361,16 @@ def test_records_that_are_none_are_refused() -> None:
             joint.from_loops(loops)
     with pytest.raises(mfv.errors.InputError, match="loop 1: needs two columns of equal length"):
         joint.from_loops([(shift, force[1:])])
+    for loop, message in (
+        ((shift, -force), "loop 1: the force falls where the displacement grows; change the sign of one of them"),
+        ((shift[::-1], force[::-1]), "loop 1: the loop runs the wrong way round, friction would do negative work"),
+        ((force, shift), "loop 1: the loop runs the wrong way round"),
+        ((shift, 0.0 * force), "loop 1: the force does not change"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            joint.from_loops([loop])
+    with pytest.raises(mfv.errors.InputError, match="loop 1: the driven column, shift, does not change"):
+        joint.from_loops([(0.0 * shift, force)])
     time = np.linspace(0.0, 3.0, 300)
     for columns, message in (
         ((time, time), "0 turning points; a ring-down needs at least 4"),

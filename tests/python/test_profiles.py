@@ -127,6 +127,26 @@ def test_units_of_texts(tmp_path: Path) -> None:
     with pytest.raises(errors.InputError, match=r"has no distances between its heights; give spacing in mm"):
         profiles.read(path)
     np.testing.assert_allclose(profiles.read(path, spacing=0.5).x, [0.0, 0.5, 1.0])
+    for spacing in (0.0, -1.0, float("nan"), "1"):
+        with pytest.raises(errors.InputError, match="spacing: must be a positive length in mm, not"):
+            profiles.read(path, spacing=spacing)  # type: ignore[arg-type]
+    with pytest.raises(errors.InputError, match="lambda_s=0.8: must be below lambda_c=0.08"):
+        profiles.read(path, spacing=0.5, lambda_s=0.8, lambda_c=0.08)
+    for content, message in (
+        ("0 0\n1 0\n", "a filter needs at least 3 points; it has 2"),
+        ("nan 1\nnan 2\n", "no height has a value"),
+    ):
+        path.write_text(content)
+        with pytest.raises(errors.InputError, match=message):
+            profiles.read(path, lambda_s=0.8)
+
+
+def test_points_without_a_position_are_omitted(tmp_path: Path) -> None:
+    path = tmp_path / "trace.txt"
+    path.write_text("x [mm] z [mm]\n0 1\nnan nan\n1 2\n2 nan\n3 1\n")
+    profile = profiles.read(path)
+    assert profile.x.tolist() == [0.0, 1.0, 2.0, 3.0] and np.isnan(profile.height).tolist() == [False, False, True, False]
+    assert profile.notes == [f"{path}: 1 of 5 points have no position and are omitted"]
 
 
 def test_gaussian_filters_halve_waves_of_the_cutoff(tmp_path: Path) -> None:

@@ -129,7 +129,7 @@ def test_a_load_history_from_other_programs(tmp_path: Path) -> None:
     written = "\n".join(f"{row},0;{load}".replace(".", ",") for row, load in enumerate(loads))
     contents = (
         "\ufefftangential_force\n" + "\n".join(map(str, loads)),
-        "# time tangential_force\n" + "\n".join(f"{row}\t{load}" for row, load in enumerate(loads)),
+        "# Time tangential_force\n" + "\n".join(f"{row}\t{load}" for row, load in enumerate(loads)),
         'Test A\n"time";"tangential_force";\n' + written.replace("\n", ";\n") + ";",
     )
     body = Body.disk(0.25, rigid=True)
@@ -140,9 +140,21 @@ def test_a_load_history_from_other_programs(tmp_path: Path) -> None:
         case.output = mfv.Output(states="reversals")
         reached = [float(state.tangential_force) for state in case.run().steps[1:]]
         assert reached == pytest.approx(loads, rel=1e-9)
-    path.write_text("tangential_force;time\n1e-4;0\n;1\n")
-    with pytest.raises(errors.InputError, match="loads.csv:3: must have a value in every column"):
-        case.contact()
+    for content, message in (
+        ("tangential_force;time\n1e-4;0\n;1\n", "loads.csv:3: must have a value in every column"),
+        (
+            "Time;Tangential_Force;tangential_force\n0;1e-4;2e-4\n",
+            "columns 2 and 3 have the same name, Tangential_Force; remove one",
+        ),
+        (
+            "Time (s);tangential_force\n0;1e-4\n",
+            r"unknown column 'Time .s.'; columns are normal_force .*, and time, which is ignored",
+        ),
+        ("time;tangential_force\n10:30:05;1e-4\n", "loads.csv:2:1: must be two numbers"),
+    ):
+        path.write_text(content)
+        with pytest.raises(errors.InputError, match=message):
+            case.contact()
 
 
 ROWS = [(0.0, 0.0, 100.0), (1.0, 0.5, 100.0), (2.0, 1.0, 100.0), (1.0, 0.75, 100.0), (0.0, 0.25, 100.0)]
@@ -170,6 +182,9 @@ def loops(heading: str, separator: str = ",", comma: bool = False, last: str = "
         (loops("Q (kN/m);U (\xb5m);P (N/mm)", ";").replace(";0.5;", ";500;").encode("latin-1"), {"units": {"shift": "mm"}}),
         (loops("Q,U,P\nN/mm,mm,N/mm").encode(), {}),
         (loops("Q;U;P\n[kN/m];[mm];[N/mm]", ";").encode(), {}),
+        (loops("time,Q,U,P\ns,N/mm,mm,N/mm").replace("\n", "\n0,").replace("\n0,s", "\ns").rstrip("0,").encode(), {}),
+        (loops("Q/(N/mm);U/mm;P/(N/mm)", ";").encode(), {}),
+        (loops("Q [-],U,P (N/mm)").encode(), {}),
         (loops("Fx,disp,Fn").encode(), {"columns": {"tangential_force": "Fx", "shift": "disp", "normal_force": "fn"}}),
         (loops("a,b,c").encode(), {"columns": {"tangential_force": 1, "shift": 2, "normal_force": 3}}),
         (loops("Q,U,remark").replace(",100.0", ",ok").encode(), {"normal_force": 100.0}),
@@ -226,10 +241,84 @@ def test_units_thickness_and_signs(tmp_path: Path) -> None:
         ("Q", "q", ""),
         ("y1", "y1", ""),
         ("shift [furlong]", "shift", ""),
+        ("U/µm", "u", "um"),
+        ("Q/(N/mm)", "q", "N/mm"),
+        ("Q lb/in", "q lb/in", ""),
     ],
 )
 def test_units_of_headings(heading: str, name: str, unit: str) -> None:
     assert (tables.name_of(heading), tables.unit_of(heading)) == (name, unit)
+
+
+@pytest.mark.parametrize(
+    "heading, units",
+    [
+        ("x in mm z in um", ("mm", "um")),
+        ("x/mm;z/µm", ("mm", "um")),
+        ("# x [um] z [nm]", ("um", "nm")),
+        ("x;z\nmm;um", ("mm", "um")),
+        ("x1 mm;z1 um", ("mm", "um")),
+        ("# all lengths in mm", ("", "mm")),
+        ("x [um] z [nm]\n# line 3, y [mm]", ("um", "nm")),
+        ("Cutoff 0.8 mm", ("", "")),
+        ("Length 4.8 mm, cutoff 0.8 mm", ("", "")),
+        ("Cutoff;0.8 mm\nx;z", ("", "")),
+        ("Spacing;0.5;um", ("", "")),
+    ],
+)
+def test_units_of_a_trace(tmp_path: Path, heading: str, units: tuple[str, str]) -> None:
+    path = tmp_path / "trace.txt"
+    path.write_text(f"{heading}\n{text()}", encoding="utf-8")
+    trace = tables.read_trace(path)
+    assert (trace.x_unit, trace.height_unit) == units and trace.x is not None and trace.x.tolist() == X
+
+
+@pytest.mark.parametrize(
+    "heading, options, message",
+    [
+        (
+            "Q [KN],U [mm],P [KN]",
+            {},
+            r"column Q \[KN\]: unknown unit 'KN'; say what it is, such as units={'tangential_force': 'N/mm'}",
+        ),
+        ("Q,U (V),P", {}, r"column U \(V\): unknown unit 'V'; say what it is, such as units={'shift': 'mm'}"),
+        ("Q [lb/in],U,P", {}, "unknown unit 'lb/in'"),
+        ("Q,U,P\n[KN],[mm],[KN]", {}, "column Q: unknown unit 'KN'"),
+        ("U,U,P", {"columns": {"tangential_force": 1}}, "columns 1, 2 have the same name, U; choose one by its number"),
+        ("Q,U,P", {"thickness": -8.0}, "thickness: must be a positive length in mm, not -8"),
+        ("Q,U,P", {"columns": {"shift": 2.0}}, "columns: shift must be the name of a column or its number from 1, not 2.0"),
+        ("Q,U,P", {"sign": {"shift": "-"}}, "sign: shift must be a factor, such as -1, not '-'"),
+        ("Q,U,P", {"units": {"shift": 5}}, "units: shift must be a unit, such as 'um', not 5"),
+    ],
+)
+def test_what_would_be_a_wrong_number_is_refused(tmp_path: Path, heading: str, options: dict[str, Any], message: str) -> None:
+    path = tmp_path / "loops.csv"
+    path.write_text(loops(heading))
+    with pytest.raises(errors.InputError, match=message):
+        identify.read(path, **options)
+
+
+def test_an_unknown_unit_is_replaced_and_a_temperature_is_no_time(tmp_path: Path) -> None:
+    path = tmp_path / "loops.csv"
+    rows = "\n".join(f"{20 + number},{','.join(map(str, row))}" for number, row in enumerate(ROWS))
+    for heading, is_time in (("T [C]", False), ("t [mm]", False), ("t", True), ("Time (s)", True)):
+        path.write_text(f"{heading},Q [V],U [mm],P\n{rows}\n")
+        (loop,) = identify.read(path, units={"tangential_force": "N/mm"})
+        assert loop.tangential_force.tolist() == [row[0] for row in ROWS]
+        assert (loop.time is not None) == is_time
+
+
+def test_faults_of_tables_in_memory() -> None:
+    table: dict[str, Any] = dict(zip("QUP", np.array(ROWS).T))
+    for test, message in (
+        (["a"] * 4 + [np.nan], "column test has empty cells"),
+        (["a"] * 4 + [None], "column test has empty cells"),
+        (["a"] * 3, "column test has 3 rows; table: column Q has 5"),
+    ):
+        with pytest.raises(errors.InputError, match=message):
+            identify.loops_of({**table, "test": np.array(test, dtype=object)})
+    with pytest.raises(errors.InputError, match="remove the rows with gaps, the first is row 2"):
+        identify.loops_of({**table, "U": [0.0, np.nan, 1.0, 0.75, 0.25]})
 
 
 def synthetic(seed: int = 0) -> tuple[Scene, identify.Loop]:

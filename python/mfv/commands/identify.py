@@ -74,7 +74,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     columns = "tangential_force, shift, normal_force, test"
     parser.add_argument(
-        "--column", type=_pair, action="append", default=[], metavar="C=NAME", help=f"name of a column in the file; C: {columns}"
+        "--column",
+        type=_pair,
+        action="append",
+        default=[],
+        metavar="C=NAME",
+        help=f"name of a column in the file, or its number from 1; C: {columns}",
     )
     parser.add_argument("--unit", type=_pair, action="append", default=[], metavar="C=UNIT", help="unit of a column in the file")
     parser.add_argument("--reverse", action="append", default=[], metavar="C", help="change the sign of a column")
@@ -97,7 +102,7 @@ def run(options: argparse.Namespace) -> None:
     scene = Scene.from_file(options.file)
     loops = read(
         options.other,
-        columns=dict(options.column),
+        columns={meaning: int(name) if name.isdecimal() else name for meaning, name in options.column},
         units=dict(options.unit),
         sign=dict.fromkeys(options.reverse, -1.0),
         thickness=options.thickness,

@@ -54,8 +54,10 @@ class Loop:
         rows = self.tangential_force.size
         if self.tangential_force.ndim != 1 or self.shift.shape != (rows,) or rows < 5:
             raise input_error(f"{self.name}: needs two columns of equal length with at least 5 rows, tangential_force and shift")
-        if not (np.isfinite(self.tangential_force).all() and np.isfinite(self.shift).all() and np.isfinite(pressing).all()):
-            raise input_error(f"{self.name}: the columns must be finite numbers; remove the rows with gaps")
+        is_gap = ~(np.isfinite(self.tangential_force) & np.isfinite(self.shift))
+        if is_gap.any() or not np.isfinite(pressing).all():
+            where = f", the first is row {np.argmax(is_gap) + 1}" if is_gap.any() else ""
+            raise input_error(f"{self.name}: the columns must be finite numbers; remove the rows with gaps{where}")
         pressing = pressing[~far_from_neighbours(pressing)[1]]
         self.normal_force = float(pressing.mean())
         if not self.normal_force > 0.0 or np.std(pressing) > 0.05 * self.normal_force:
@@ -104,7 +106,7 @@ class Loop:
         return self.tangential_force if self.drive == "tangential_force" else self.shift
 
     @property
-    def _is_reversed(self) -> bool:
+    def is_reversed(self) -> bool:
         """Whether the shift falls where the force grows."""
         force, shift = self.tangential_force - self.tangential_force.mean(), self.shift - self.shift.mean()
         return float(force @ shift) < 0.0
@@ -112,9 +114,9 @@ class Loop:
     def _prepared(self) -> tuple[Loop, Path]:
         """The loop with the sign of the shift that belongs to the force, and with the noise of both columns, estimated where it is not
         given; and the path of its driven column. Raises InputError."""
-        loop = dataclasses.replace(self, shift=-self.shift) if self._is_reversed else self
+        loop = dataclasses.replace(self, shift=-self.shift) if self.is_reversed else self
         path = path_of(loop)
-        if self._is_reversed:
+        if self.is_reversed:
             path.warnings.insert(
                 0,
                 f"{self.name}: shift and tangential force have opposite signs (the loop runs clockwise, it would produce energy): the "

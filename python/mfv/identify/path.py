@@ -25,6 +25,9 @@ _CORRELATED, _LARGE = 0.4, 0.002
 #: Degrees of the polynomials over the time of a branch, and the rows that a branch needs for one.
 _DEGREES, _ENOUGH = (1, 3, 5, 7), 16
 
+#: Largest degree of the polynomial about a turning point of a smooth column.
+_SMOOTH = 8
+
 #: Standard errors of extremes grow by this factor as the time of the turn and its shape are chosen by the fit (120 synthetic loops).
 SEARCHED = 1.2
 
@@ -94,6 +97,8 @@ def path_of(loop: Loop) -> Path:
     by_force = loop.drive == "tangential_force"
     driven = force if by_force else shift
     amplitude = float(np.ptp(driven))
+    if amplitude == 0.0:
+        raise input_error(f"{loop.name}: the driven column, {loop.drive}, does not change")
     columns = ((force, loop.force_noise), (shift, loop.shift_noise))
     force_noise, shift_noise = (estimated_noise(column, loop.time) if noise is None else noise for column, noise in columns)
     noise = force_noise if by_force else shift_noise
@@ -302,17 +307,46 @@ def _level(driven: Array, time: Array, ends: list[int], number: int, noise: floa
     return best[1], best[2], best[3]
 
 
-def extremes_of(column: Array, time: Array | None = None) -> list[tuple[float, float, float]]:
-    """Values, standard errors and times of the turning points inside a column whose rows are evenly spaced or have a time, without
-    those at its ends."""
-    at = np.arange(column.size, dtype=float) if time is None else time
+def smooth_extremes(column: Array, time: Array) -> list[tuple[float, float, float, float]]:
+    """Values and times of the turning points inside a smooth column, without those at its ends, each with its standard error: value,
+    error, time, error."""
     noise = estimated_noise(column, time)
-    if np.ptp(np.diff(at)) < 1e-3 * float(np.median(np.diff(at))):
+    if np.ptp(np.diff(time)) < 1e-3 * float(np.median(np.diff(time))):
         # Few rows a period: fourth differences contain less of the motion.
         noise = min(noise, robust_deviation(np.diff(column, 4)) / math.sqrt(70.0))
     rows = _reversals(column, 8.0 * noise)
     ends = [0, *rows, column.size - 1]
-    return [_level(column, at, ends, number, noise) for number in range(1, len(ends) - 1)]
+    return [_smooth_extreme(column, time, ends[number - 1 : number + 2], noise) for number in range(1, len(ends) - 1)]
+
+
+def _smooth_extreme(column: Array, time: Array, ends: list[int], noise: float) -> tuple[float, float, float, float]:
+    """A turning point between two others, at the rows `ends`: that of a polynomial over the time of a third of the branches on either
+    side, of the degree with the best Bayesian information criterion."""
+    row = ends[1]
+    window = np.arange(max(row - max(3, (row - ends[0]) // 3), 0), min(row + max(3, (ends[2] - row) // 3) + 1, column.size))
+    span = float(time[window[-1]] - time[window[0]])
+    at = (time[window] - time[row]) / span
+    best = (math.inf, float(column[row]), noise, float(time[row]), span / window.size)
+    floor = (1e-12 * float(np.ptp(column[window]))) ** 2
+    for degree in range(2, min(_SMOOTH, window.size - 2) + 1):
+        basis = np.vander(at, degree + 1)
+        coefficients = np.linalg.lstsq(basis, column[window], rcond=None)[0]
+        variance = float(np.mean((column[window] - basis @ coefficients) ** 2)) + floor
+        criterion = window.size * math.log(variance) + degree * math.log(window.size)
+        slope = np.polyder(coefficients)
+        turns = [float(root.real) for root in np.roots(slope) if abs(root.imag) < 1e-9 and at[0] <= root.real <= at[-1]]
+        if criterion >= best[0] or not turns:
+            continue
+        turn = min(turns, key=abs)
+        powers = turn ** np.arange(degree, -1.0, -1.0)
+        changes = np.append(np.polyder(np.ones(degree + 1)) * powers[1:], 0.0)
+        inverse = (SEARCHED * noise) ** 2 * np.linalg.pinv(basis.T @ basis)
+        value_error, slope_error = (math.sqrt(float(each @ inverse @ each)) for each in (powers, changes))
+        bend = abs(float(np.polyval(np.polyder(slope), turn)))
+        if bend > 0.0:
+            value = float(np.polyval(coefficients, turn))
+            best = (criterion, value, value_error, float(time[row]) + span * turn, span * slope_error / bend)
+    return best[1:]
 
 
 def _grouped(

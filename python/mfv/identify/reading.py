@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Mapping, Sequence
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -20,6 +22,9 @@ _COLUMNS = {
     "test": ("test",),
     "time": ("time", "t"),
 }
+
+#: Units of a column of times, in lower case; one with another unit is a temperature or a thickness.
+_TIMES = ("", "s", "sec", "seconds", "ms", "us", "µs", "min", "h", "d", "cycles")
 
 
 def read(path: str | os.PathLike[str], **options: Any) -> list[Loop]:
@@ -56,6 +61,8 @@ def _names_of(given: Mapping[str, str | int] | None) -> dict[str, Sequence[str] 
     _check_meanings("columns", given)
     names: dict[str, Sequence[str] | int] = dict(_COLUMNS)
     for meaning, name in (given or {}).items():
+        if isinstance(name, bool) or not isinstance(name, (int, str)):
+            raise input_error(f"columns: {meaning} must be the name of a column or its number from 1, not {name!r}")
         names[meaning] = name if isinstance(name, int) else (name.strip().lower(),)
     return names
 
@@ -65,6 +72,21 @@ def _check_meanings(option: str, given: Mapping[str, Any] | None) -> None:
     for meaning in given or {}:
         if meaning not in _COLUMNS:
             raise input_error(f"{option}: '{meaning}' is not one of {', '.join(_COLUMNS)}")
+
+
+def _check_values(option: str, given: Mapping[str, Any] | None, kind: type, what: str) -> None:
+    """Raises InputError for an option that is not a mapping of columns by their meaning to values of a kind."""
+    _check_meanings(option, given)
+    for meaning, value in (given or {}).items():
+        if not isinstance(value, kind):
+            raise input_error(f"{option}: {meaning} must be {what}, not {value!r}")
+
+
+def _unit_of(column: tables.Column, meaning: str, units: Mapping[str, str], usual: str) -> str:
+    """The unit of a column, or ''; `usual` is for the advice. Raises InputError for one in brackets that is not known."""
+    if meaning not in units and column.unit and not tables.known_unit(column.unit):
+        raise input_error(f"{column.label}: unknown unit '{column.unit}'; say what it is, such as units={{'{meaning}': '{usual}'}}")
+    return units.get(meaning, column.unit)
 
 
 def _loops(
@@ -81,14 +103,16 @@ def _loops(
     **options: Any,
 ) -> list[Loop]:
     """The loops in columns by their meaning; options as in `loops_of`. Raises InputError."""
-    for option, given in (("units", units), ("sign", sign)):
-        _check_meanings(option, given)
+    _check_values("units", units, str, "a unit, such as 'um'")
+    _check_values("sign", sign, Real, "a factor, such as -1")
+    if thickness is not None and not (isinstance(thickness, Real) and 0.0 < thickness < math.inf):
+        raise input_error(f"thickness: must be a positive length in {length_unit}, not {thickness!r}")
     values = {}
     for meaning in ("tangential_force", "shift", "normal_force"):
         if meaning == "normal_force" and normal_force is not None:
             continue
         column = found[meaning]
-        unit = (units or {}).get(meaning, column.unit)
+        unit = _unit_of(column, meaning, units or {}, length_unit if meaning == "shift" else f"{force_unit}/{length_unit}")
         if meaning == "shift":
             scale = tables.factor(unit, length_unit) if unit else 1.0
         else:
@@ -100,7 +124,9 @@ def _loops(
     if "test" not in found:
         return [Loop(force, shift, pressing, name=name, time=_times(time, slice(None)), **options)]  # type: ignore[arg-type]  # it takes the mean
     tests = np.asarray(found["test"].values)
-    if "" in tests.tolist():
+    if tests.shape != force.shape:
+        raise input_error(f"{found['test'].label} has {tests.size} rows; {found['tangential_force'].label} has {force.size}")
+    if any(test is None or test == "" or test != test for test in tests.tolist()):
         raise input_error(f"{found['test'].label} has empty cells; give every row the name of its test")
     return [
         Loop(force[rows], shift[rows], pressing[rows], name=f"{name}: {test}", time=_times(time, rows), **options)
@@ -110,8 +136,8 @@ def _loops(
 
 
 def _times(column: tables.Column | None, rows: Any) -> np.ndarray | None:
-    """The times of the rows of a test; none if they are not increasing numbers, such as times of the day."""
-    if column is None:
+    """The times of the rows of a test; none if they are not increasing numbers, such as times of the day, or have another unit."""
+    if column is None or column.unit.lower() not in _TIMES:
         return None
     try:
         times = column.numbers()[rows]

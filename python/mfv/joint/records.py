@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._packages import needed
 from ..identify import Loop
-from ..identify.path import Path, extremes_of, path_of
+from ..identify.path import Path, path_of, smooth_extremes
+from ..loop_checks import about_direction
 from .backbone import Backbone
 from .measurement import Cycle, Measurement
 
@@ -55,6 +56,8 @@ def from_loops(loops: Sequence[tuple[ArrayLike, ArrayLike]]) -> Measurement:
         for number, (shift, force) in enumerate(loops)
     ]
     paths = [path_of(record) for record in records]
+    for record, path in zip(records, paths):
+        _check_direction(record, path)
     levels = [_levels(record, path) for record, path in zip(records, paths)]
     amplitudes = [0.5 * (upper - lower) for lower, upper in levels]
     slips = max(amplitudes) * np.geomspace(SMALLEST, 1.0, TRIED)
@@ -68,7 +71,7 @@ def from_loops(loops: Sequence[tuple[ArrayLike, ArrayLike]]) -> Measurement:
         weight = 1.0 / float(np.ptp(record.tangential_force))
         rows.append(weight * np.concatenate([columns, origin, -origin]).T[used])
         forces.append(weight * record.tangential_force[used])
-    found, _ = _positive(np.concatenate(rows), np.concatenate(forces))
+    found = _positive(np.concatenate(rows), np.concatenate(forces))
     stiffness = found[: TRIED + 1]
     origins = (found[TRIED + 1 : TRIED + 1 + len(records)] - found[TRIED + 1 + len(records) :]) * [
         float(np.ptp(record.tangential_force)) for record in records
@@ -85,28 +88,27 @@ def ring_down(time: ArrayLike, displacement: ArrayLike) -> RingDown:
     """Frequency and damping of a free decay over its amplitude, from the turning points of a record of the `displacement` over the
     `time`. Raises ValueError.
 
-    A constant origin does not matter: an amplitude is half the way between turning points. Turning points are those of a smooth
-    maximum through the rows around them, up to an amplitude of four standard deviations of the noise.
+    A constant origin does not matter: an amplitude is half the way between turning points. Turning points are those of a
+    polynomial through the rows around them, up to an amplitude of four standard deviations of the noise.
     """
     at, column = np.asarray(time, dtype=float), np.asarray(displacement, dtype=float)
     if at.ndim != 1 or at.shape != column.shape or at.size < 20 or not (np.isfinite(at).all() and np.isfinite(column).all()):
         raise ValueError("a ring-down needs two columns of at least 20 finite numbers, time and displacement")
     if np.any(np.diff(at) <= 0.0):
         raise ValueError("the times of a ring-down must increase")
-    found = extremes_of(column, at)
+    found = smooth_extremes(column, at)
     if len(found) < 4:
         raise ValueError(f"the record has {len(found)} turning points; a ring-down needs at least 4")
-    value, error, when = (np.array(each) for each in zip(*found))
-    half, spread = 0.5 * np.abs(np.diff(value)), 0.5 * np.hypot(error[1:], error[:-1])
+    value, error, when, when_error = (np.array(each) for each in zip(*found))
+    half = 0.5 * np.abs(np.diff(value))
     period = when[2:] - when[:-2]
-    # A turning point is known in time to about the angle by which its error moves the maximum of a sine.
-    angle = np.hypot(error[2:] / half[1:], error[:-2] / half[:-1])
+    # The turning point in the middle of a period changes both halves alike.
     return RingDown(
         np.sqrt(half[1:] * half[:-1]),
         1.0 / period,
         np.log(half[:-1] / half[1:]) / np.pi,
-        angle / (2.0 * np.pi) / period,
-        np.hypot(spread[1:] / half[1:], spread[:-1] / half[:-1]) / np.pi,
+        np.hypot(when_error[2:], when_error[:-2]) / period**2,
+        0.5 * np.hypot(error[2:] / half[1:], error[:-2] / half[:-1]) / np.pi,
     )
 
 
@@ -140,7 +142,7 @@ def from_ring_down(decay: RingDown, mass: float) -> Measurement:
         target = measured * correction
         weight = (by_damping / (measured * amplitude))[:, None]
         rows = np.concatenate([balance * (by_frequency / measured)[:, None], work * weight])
-        stiffness, _ = _positive(rows, np.concatenate([target * by_frequency / measured, np.zeros(amplitude.size)]))
+        stiffness = _positive(rows, np.concatenate([target * by_frequency / measured, np.zeros(amplitude.size)]))
         period = _period(amplitude, slips, stiffness, mass)
         correction = (balance @ stiffness) * (period / (2.0 * np.pi)) ** 2 / mass
     backbone = _backbone(slips, stiffness)
@@ -152,6 +154,18 @@ def from_ring_down(decay: RingDown, mass: float) -> Measurement:
         for u, q, energy in zip(amplitude[order], force[order], lost[order])
     ]
     return Measurement(backbone, cycles)
+
+
+def _check_direction(record: Loop, path: Path) -> None:
+    """Raises ValueError for a loop that no springs and sliders have, since the force has the other sign or the rows another order."""
+    force, shift = record.tangential_force, record.shift
+    if np.ptp(force) == 0.0:
+        raise ValueError(f"{record.name}: the force does not change")
+    if record.is_reversed:
+        raise ValueError(f"{record.name}: the force falls where the displacement grows; change the sign of one of them")
+    turns = np.flatnonzero(np.diff(path.branch)).tolist()
+    for sentence in about_direction(record.name, force, shift, turns, path.noise):
+        raise ValueError(sentence)
 
 
 def _levels(record: Loop, path: Path) -> tuple[float, float]:
@@ -209,12 +223,12 @@ def _period(amplitude: Array, slips: Array, stiffness: Array, mass: float, point
     return np.asarray(2.0 * np.pi / points * np.sum(amplitude[:, None] * np.sin(angle) / np.sqrt(2.0 * work / mass), axis=1))
 
 
-def _positive(rows: Array, values: Array) -> tuple[Array, float]:
+def _positive(rows: Array, values: Array) -> Array:
     """Least squares with unknowns of at least 0, columns scaled."""
     norms = np.linalg.norm(rows, axis=0)
     scale = np.where(norms > 0.0, norms, 1.0)
-    found, rest = needed("scipy.optimize").nnls(rows / scale, values, maxiter=100 * rows.shape[1])
-    return np.asarray(found / scale), float(rest)
+    found, _ = needed("scipy.optimize").nnls(rows / scale, values, maxiter=100 * rows.shape[1])
+    return np.asarray(found / scale)
 
 
 def _backbone(slips: Array, stiffness: Array) -> Backbone:

@@ -8,7 +8,7 @@ module mfv_history_reader
                           control_displacement, controlled_key
    use mfv_scene, only: scene_type, step_type
    use mfv_step_reader, only: check_bulk_stress, last_pressing, read_steady_tolerance
-   use mfv_strings, only: add_text, has_word, string_type, to_text
+   use mfv_strings, only: add_text, has_word, lower_case, string_type, to_text
    use mfv_table_file, only: read_named_table
    implicit none
    private
@@ -91,7 +91,7 @@ contains
       type(reader_type), intent(in) :: reader
       type(table_type), intent(out) :: table
       type(error_type), allocatable, intent(out) :: error
-      type(string_type), allocatable :: keys(:), known(:)
+      type(string_type), allocatable :: keys(:), known(:), written(:)
       type(error_type), allocatable :: file_error
       character(:), allocatable :: path, advice, list
       logical :: in_memory
@@ -114,16 +114,25 @@ contains
          call reader%complain(group, 1, 'file', file_error%message, error)
          return
       end if
+      written = table%names
+      do i = 1, size(written)
+         table%names(i)%text = lower_case(written(i)%text)
+      end do
       do i = 1, size(table%names)
          associate (name => table%names(i)%text)
+            if (column_of(table, name) > i .and. name /= '') then
+               call reader%complain(group, 1, 'file', path//': columns '//to_text(i)//' and '//to_text(column_of(table, name))// &
+                                    ' have the same name, '//written(i)%text//'; remove one of them', error)
+               return
+            end if
             if (has_word(list//' '//ignored, name)) cycle
             if (name == '') then
                call reader%complain(group, 1, 'file', path//': column '//to_text(i)//' has no name', error)
                return
             end if
             call suggest(name, known, '', advice)
-            if (advice == '') advice = '; columns are'//list
-            call reader%complain(group, 1, 'file', path//': unknown column '''//name//''''//advice, error)
+            if (advice == '') advice = '; columns are'//list//', and '//ignored//', which is ignored'
+            call reader%complain(group, 1, 'file', path//': unknown column '''//written(i)%text//''''//advice, error)
             return
          end associate
       end do
