@@ -91,9 +91,13 @@ def read(
     place: Array = np.asarray(np.arange(height.size) * float(spacing or 0.0) if x is None else x_scale * x)
     if not np.any(np.isfinite(height)):
         raise input_error(f"{name}: no height has a value")
-    for key, length in (("lambda_s", lambda_s), ("lambda_c", lambda_c)):
+    for key, length in (("spacing", spacing), ("lambda_s", lambda_s), ("lambda_c", lambda_c)):
         if length is not None and not 0.0 < length < np.inf:
             raise input_error(f"{key}: must be a positive length in {unit}, not {length!r}")
+    if lambda_s is not None and lambda_c is not None and lambda_s >= lambda_c:
+        raise input_error(f"lambda_s: must be less than lambda_c={lambda_c!r}, not {lambda_s!r}: nothing would remain")
+    if not np.nanmin(place) < np.nanmax(place):
+        raise input_error(f"{name}: a profile needs at least two points at different positions")
     if lambda_s is not None or lambda_c is not None:
         place, height = _filtered(place, height, lambda_s, lambda_c, notes)
     return Profile(place, -height if outwards else height, unit, notes)

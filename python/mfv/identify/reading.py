@@ -83,6 +83,8 @@ def _loops(
     """The loops in columns by their meaning; options as in `loops_of`. Raises InputError."""
     for option, given in (("units", units), ("sign", sign)):
         _check_meanings(option, given)
+    if thickness is not None and not 0.0 < thickness < np.inf:
+        raise input_error(f"{name}: thickness must be a positive length in {length_unit}, not {thickness!r}")
     values = {}
     for meaning in ("tangential_force", "shift", "normal_force"):
         if meaning == "normal_force" and normal_force is not None:
