@@ -553,7 +553,9 @@ def _surface_points(result: Result, state: Group) -> np.ndarray:
     left, right = contact(result, [state])
     touching = result.mesh.x[state.status != NodeStatus.OPEN]
     steps = (right - left) * np.geomspace(1.0e-5, 0.1, 40)
-    edges = state.contact_edge[np.isfinite(state.contact_edge)] if "contact_edge" in state else touching[[0, -1]]
+    edges = touching[[0, -1]]
+    if "contact_edge" in state:  # along the surface
+        edges = np.interp(state.contact_edge[np.isfinite(state.contact_edge)], result.mesh.get("arc", result.mesh.x), result.mesh.x)
     close = [edge + side * steps for edge in edges for side in (-1.0, 1.0)]
     points = np.unique(np.concatenate([np.linspace(left, right, 301), *close]))
     return points[(points >= left) & (points <= right)]

@@ -101,6 +101,8 @@ def read(
         place, height = place[has_place], height[has_place]
     if not np.any(np.isfinite(height)):
         raise input_error(f"{name}: no height has a value")
+    if not np.nanmin(place) < np.nanmax(place):
+        raise input_error(f"{name}: a profile needs at least two points at different positions")
     if lambda_s is not None or lambda_c is not None:
         if place.size < 3:
             raise input_error(f"{name}: a filter needs at least 3 points; it has {place.size}")

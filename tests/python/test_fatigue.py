@@ -769,3 +769,14 @@ def test_picture_of_a_map(side: float) -> None:
     ax = mfv.plot.parameter_contours(tilted, pyplot.figure().subplots())
     assert ax.get_title().endswith("30\N{DEGREE SIGN}, tilted 20\N{DEGREE SIGN} out of the plane")
     pyplot.close("all")
+
+
+def test_points_are_dense_at_the_edges_of_a_curved_contact() -> None:
+    """In a bore the edges of the contact are x, which differ from lengths along the surface by 2 %."""
+    result = mfv.run(EXAMPLES / "pin_in_bore.nml")
+    x, _ = fatigue.graded_points(result)
+    left, right = result.summary.contact_left, result.summary.contact_right
+    half = 0.5 * (right - left)
+    for edge in (left, right):
+        assert np.sum(np.abs(x[0] - edge) < 1.0e-3 * half) > 5
+    assert abs(np.nanmin(result.state.contact_edge) - left) > 0.02 * half

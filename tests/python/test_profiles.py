@@ -53,7 +53,14 @@ def test_lines_of_a_map_in_the_unit_of_the_scene(tmp_path: Path) -> None:
         profiles.read(path, channel="Phase")
     with pytest.raises(errors.InputError, match="scan.x3p: has positions; remove spacing"):
         profiles.read(path, spacing=0.1)
-    for options in ({"line": 0}, {"line": "last"}, {"along": "z"}, {"unit": "N"}, {"lambda_s": -1.0}):
+    for options in (
+        {"line": 0},
+        {"line": "last"},
+        {"along": "z"},
+        {"unit": "N"},
+        {"lambda_s": -1.0},
+        {"lambda_s": 2.0, "lambda_c": 1.0},
+    ):
         with pytest.raises(errors.InputError):
             profiles.read(path, **options)
 
@@ -197,3 +204,13 @@ def test_without_the_package_the_message_has_the_line_that_installs_it(tmp_path:
         ModuleNotFoundError, match=r"scan.x3p:1:\d+: not a text file.*; for files of instruments the Python package"
     ):
         profiles.read(path)
+
+
+def test_a_profile_has_two_points_at_a_distance(tmp_path: Path) -> None:
+    (tmp_path / "point.csv").write_text("x [mm], z [mm]\n1, 2\n")
+    (tmp_path / "heights.csv").write_text("z [mm]\n1\n2\n3\n")
+    for options in ({}, {"lambda_s": 1.0}):
+        with pytest.raises(errors.InputError, match="point.csv: a profile needs at least two points at different positions"):
+            profiles.read(tmp_path / "point.csv", **options)
+    with pytest.raises(errors.InputError, match="spacing: must be a positive length in mm, not -1.0"):
+        profiles.read(tmp_path / "heights.csv", spacing=-1.0)

@@ -215,6 +215,8 @@ def test_units_thickness_and_signs(tmp_path: Path) -> None:
     with pytest.raises(errors.InputError, match="column Q .kN.: is a force in kN, .*; give the thickness in mm"):
         identify.read(path)
     path.write_text(loops("Q,U,P"))
+    with pytest.raises(errors.InputError, match="thickness: must be a positive length in mm, not -1.0"):
+        identify.read(path, thickness=-1.0)
     (loop,) = identify.read(path, thickness=10.0, units={"shift": "nm"})
     assert loop.normal_force == 10.0 and loop.shift.max() == pytest.approx(1.0e-6)
     for options, message in (

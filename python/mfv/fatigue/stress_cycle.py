@@ -181,8 +181,8 @@ def inside(result: Result, body: str, x: Array, depth: Array) -> Array:
 
 
 def _edges(result: Result) -> Array:
-    """Positions of the edges of contact in the last state."""
-    edges = np.asarray(result.state.get("contact_edge", np.empty(0)))
+    """Positions x of the edges of contact in the last state."""
+    edges = np.concatenate([result.patches.get(name, np.empty(0)) for name in ("contact_left", "contact_right")])
     edges = np.unique(edges[np.isfinite(edges)])
     if edges.size < 2:
         loaded = np.flatnonzero(result.state.pressure > 0.0)
