@@ -79,9 +79,6 @@ static void make_contact(host *self, const settings *wanted) {
   mfv_scene_set_text(scene, "output%states", "none");  /* and any state can be restored */
   if (mfv_create(scene, &self->contact, message, sizeof message) != MFV_COMPLETE) stop("scene", message);
   mfv_scene_free(&scene);
-  self->nodes = (size_t)wanted->nodes;
-  self->fields = malloc(5 * self->nodes * sizeof *self->fields);
-  if (self->fields == NULL) stop("memory", "not enough");
 }
 
 static void get_loads(const host *self, mfv_loads *loads) {
@@ -131,6 +128,14 @@ static double potential_energy(host *self) {
   enum { WIDTH, PRESSURE, NORMAL_DISPLACEMENT, SHEAR, TANGENTIAL_DISPLACEMENT, FIELDS };
   mfv_loads loads;
   double *field[FIELDS], energy = 0.0;
+  size_t nodes;
+  check(self, mfv_field_info(self->contact, paths[WIDTH], &nodes, NULL, NULL, NULL, 0, NULL, 0), paths[WIDTH]);
+  if (nodes > self->nodes) { /* the mesh grows with the contact */
+    free(self->fields);
+    self->fields = malloc(FIELDS * nodes * sizeof *self->fields);
+    if (self->fields == NULL) stop("memory", "not enough");
+  }
+  self->nodes = nodes;
   for (int i = 0; i < FIELDS; ++i) {
     field[i] = self->fields + (size_t)i * self->nodes;
     check(self, mfv_copy_real(self->contact, paths[i], field[i], self->nodes), paths[i]);

@@ -16,7 +16,7 @@ module mfv_resolution
    implicit none
    private
    public :: find_unresolved, unresolved_type, add_unresolved, is_unresolved, all_quantities, undersampling, poorest_patch, &
-             fewest_patch_nodes, unresolved_observables
+             fewest_patch_nodes, find_unresolved_observables
 
    !> What a mesh does not resolve.
    type :: unresolved_type
@@ -71,17 +71,19 @@ contains
    pure recursive logical function is_unresolved(unresolved, name) result(is_there)
       type(unresolved_type), intent(in) :: unresolved(:)
       character(*), intent(in) :: name
+      character(len=20) :: group
       integer :: i
 
       is_there = any([(has_word(unresolved(i)%quantities, name), i=1, size(unresolved))])
-      if (.not. is_there .and. named_as(name) /= '') is_there = is_unresolved(unresolved, trim(named_as(name)))
+      group = named_as(name)
+      if (.not. is_there .and. group /= '') is_there = is_unresolved(unresolved, trim(group))
    end function is_unresolved
 
    !> Names of the observables that the mesh of a simulation, or a coarser one of its error bars, does not resolve, separated by
    !> blanks.
-   function unresolved_observables(simulation) result(names)
+   subroutine find_unresolved_observables(simulation, names)
       type(simulation_type), intent(in) :: simulation
-      character(:), allocatable :: names
+      character(:), allocatable, intent(out) :: names
       type(unresolved_type), allocatable :: unresolved(:)
       integer :: place
 
@@ -97,7 +99,7 @@ contains
          if (is_unresolved(unresolved, trim(observables(place)%name))) names = names//' '//trim(observables(place)%name)
       end do
       names = names(min(2, len(names) + 1):)
-   end function unresolved_observables
+   end subroutine find_unresolved_observables
 
    !> The quantity or group whose name stands for an observable where quantities are not resolved, padded with blanks: for a
    !> dimensionless number its uncertain factor.
@@ -185,7 +187,7 @@ contains
    subroutine check_patches(simulation, unresolved)
       type(simulation_type), intent(in) :: simulation
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
-      character(:), allocatable :: why
+      character(:), allocatable :: why, advice
       type(zone_type) :: patch
       integer :: nodes, patches
 
@@ -197,30 +199,31 @@ contains
          why = 'only '//to_text(nodes)//trim(merge(' node is  ', ' nodes are', nodes == 1))//' in contact'
          if (patches > 1) why = why//' in the patch near x = '//to_text(model%x((patch%first + patch%last)/2), 4)//', one of '// &
                                 to_text(patches)//' patches with '//to_text(count(in_contact(status)))//' nodes'
-         call add_unresolved(unresolved, all_quantities(simulation), why, advice_on_heights(model%scene%lower, 'lower')// &
-                             advice_on_heights(model%scene%upper, 'upper')//'use '// &
+         advice = ''
+         call advise_on_heights(model%scene%lower, 'lower', advice)
+         call advise_on_heights(model%scene%upper, 'upper', advice)
+         call add_unresolved(unresolved, all_quantities(simulation), why, advice//'use '// &
                              trim(needed_mesh(model, simulation%contact%state, sum(model%width(patch%first:patch%last)), &
                                               fewest_patch_nodes))//' for '// &
                              to_text(fewest_patch_nodes)//' nodes in each patch')
       end associate
    end subroutine check_patches
 
-   !> Advice for a profile so steep that its heights are probably in another unit than its positions; else empty.
-   pure function advice_on_heights(body, name) result(advice)
+   !> Add to `advice` what to do about a profile so steep that its heights are probably in another unit than its positions.
+   subroutine advise_on_heights(body, name, advice)
       type(body_type), intent(in) :: body
       character(*), intent(in) :: name
-      character(:), allocatable :: advice
+      character(:), allocatable, intent(inout) :: advice
       real(wp), parameter :: steep = 1.0_wp
       real(wp) :: slope
       integer :: n
 
-      advice = ''
       if (body%shape /= shape_profile) return
       n = size(body%position)
       slope = sum(abs(body%height(2:) - body%height(:n - 1)))/(body%position(n) - body%position(1))
-      if (slope > steep) advice = 'check height_scale of the '//name//' body, whose heights change by '//to_text(slope, 2)// &
-                                  ' per unit of x, or '
-   end function advice_on_heights
+      if (slope > steep) advice = advice//'check height_scale of the '//name//' body, whose heights change by '// &
+                                  to_text(slope, 2)//' per unit of x, or '
+   end subroutine advise_on_heights
 
    !> A profile with more points than the mesh has nodes, which changes the pressures between them.
    subroutine check_profile(simulation, upper, unresolved)

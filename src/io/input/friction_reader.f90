@@ -42,7 +42,7 @@ contains
    subroutine check_friction_keys(reader, error)
       type(reader_type), intent(in) :: reader
       type(error_type), allocatable, intent(out) :: error
-      character(:), allocatable :: coefficients, needed, known
+      character(:), allocatable :: coefficients, needed, known, law
       type(string_type), allocatable :: keys(:)
       integer :: i
 
@@ -56,7 +56,8 @@ contains
                                     "has no effect with law='"//reader%text_value('friction', 1, 'law')// &
                                     "'; remove it or choose another law", error)
             else
-               call reader%complain('friction', 1, keys(i)%text, "needs a law; add law='"//first_law_with(keys(i)%text)//"'", error)
+               call find_law_with(keys(i)%text, law)
+               call reader%complain('friction', 1, keys(i)%text, "needs a law; add law='"//law//"'", error)
             end if
          else if (has_word(coefficients, keys(i)%text) .and. reader%has('friction', 1, 'mu_file')) then
             call reader%complain('friction', 1, keys(i)%text, 'mu_file is also given; give only one of them', error)
@@ -72,9 +73,10 @@ contains
    end subroutine check_friction_keys
 
    !> The first law that has a key.
-   function first_law_with(key) result(law)
+   subroutine find_law_with(key, law)
       character(*), intent(in) :: key
-      character(:), allocatable :: law, coefficients, needed, known
+      character(:), allocatable, intent(out) :: law
+      character(:), allocatable :: coefficients, needed, known
       type(string_type), allocatable :: laws(:)
       integer :: i
 
@@ -84,7 +86,7 @@ contains
          call find_keys_of_law(law, coefficients, needed, known)
          if (has_word(coefficients//' '//known, key)) return
       end do
-   end function first_law_with
+   end subroutine find_law_with
 
    !> Keys of a law, separated by blanks: its coefficients, other needed keys, and all keys except its coefficients.
    subroutine find_keys_of_law(name, coefficients, needed, known)

@@ -18,7 +18,7 @@ module mfv_result_fields
    use mfv_motions, only: motions, motion_count => user_motions, motion_approach, motion_shift, motion_rotation, bulk_motions
    use mfv_node_status, only: event_names, in_contact, node_status_names
    use mfv_observables, only: observable_count, observable_place, observables, observables_of
-   use mfv_resolution, only: unresolved_observables
+   use mfv_resolution, only: find_unresolved_observables
    use mfv_scene, only: algorithm_names, stepping_leap, stepping_names
    use mfv_simulation, only: history_none, mark_cycle_start, mark_loading, mark_return, mark_reversal, &
                              sensitivity_type, simulation_type
@@ -198,10 +198,11 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(string_type), intent(in) :: warnings(:)
       type(string_type), allocatable, intent(out) :: names(:), texts(:)
-      character(:), allocatable :: text, directory
+      character(:), allocatable :: text, directory, unresolved
       integer :: i
 
       call find_working_directory(directory)
+      call find_unresolved_observables(simulation, unresolved)
       text = ''
       do i = 1, size(warnings)
          if (i > 1) text = text//achar(10)
@@ -211,7 +212,7 @@ contains
       call add('outcome', status_outcome(simulation%outcome))
       call add('message', simulation%message)
       call add('warnings', text)
-      call add('unresolved', unresolved_observables(simulation))
+      call add('unresolved', unresolved)
       call add('input', case%text)
       call add('input_file', case%source)
       call add('options', trim(case%options))
