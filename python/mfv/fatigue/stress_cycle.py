@@ -181,9 +181,12 @@ def inside(result: Result, body: str, x: Array, depth: Array) -> Array:
 
 
 def _edges(result: Result) -> Array:
-    """Positions x of the edges of contact in the last state."""
-    edges = np.concatenate([result.patches.get(name, np.empty(0)) for name in ("contact_left", "contact_right")])
+    """Positions of the edges of contact in the last state, in both bodies: lengths along the surface, which are x in a half-plane, and
+    x, where it is curved."""
+    edges = np.asarray(result.state.get("contact_edge", np.empty(0)))
     edges = np.unique(edges[np.isfinite(edges)])
+    edges = np.sort(np.concatenate([edges, np.interp(edges, result.mesh.get("arc", result.mesh.x), result.mesh.x)]))
+    edges = edges[np.diff(edges, prepend=-np.inf) > 1.0e-9 * np.ptp(result.mesh.x)]
     if edges.size < 2:
         loaded = np.flatnonzero(result.state.pressure > 0.0)
         if not loaded.size:
