@@ -183,7 +183,7 @@ def inside(result: Result, body: str, x: Array, depth: Array) -> Array:
 def _edges(result: Result) -> Array:
     """Positions of the edges of contact in the last state, in both bodies: lengths along the surface, which are x in a half-plane, and
     x, where it is curved."""
-    edges = np.asarray(result.state.get("contact_edge", np.empty(0)))
+    edges: Array = np.asarray(result.state.get("contact_edge", np.empty(0)))
     edges = np.unique(edges[np.isfinite(edges)])
     edges = np.sort(np.concatenate([edges, np.interp(edges, result.mesh.get("arc", result.mesh.x), result.mesh.x)]))
     edges = edges[np.diff(edges, prepend=-np.inf) > 1.0e-9 * np.ptp(result.mesh.x)]
