@@ -23,7 +23,7 @@ from matplotlib.ticker import MaxNLocator
 from .codes import EventKind, NodeStatus
 from .errors import MfvError
 from .result import Group, Result, counts, is_last
-from .stress import NAMES, Largest, StressField, grid, stored, stress
+from .stress import NAMES, Largest, StressField, contact_edges, grid, stored, stress
 from .stress import surface as surface_height
 from .views import contact, friction_limits, has_friction, has_last_normal_force, heights, is_named, limit_of_friction
 
@@ -523,7 +523,7 @@ def surface_stress(result: Result, ax: Axes | None = None, step: int | None = No
     shown = [number for number in turns if number < chosen and result.steps[number - 1].step == result.cycles.step[-1]]
     name = "sigma_xx" if result.scene.get(f"{body}_radius") is None else "sigma_thetatheta"
     for number, style in zip([*shown, step], [*((0, (k + 1, 1.5)) for k in range(len(shown))), "-"]):
-        x = _surface_points(result, result.at(number))
+        x = _surface_points(result, body, number)
         field = stress(result, x, surface_height(result, body, x), body=body, step=number)
         color = NUMBERS if number == step else "0.45"
         label = f"{'state ' if number else 'last state'}{number or ''}"
@@ -548,15 +548,11 @@ def _mark_tension(ax: Axes, peak: Largest, result: Result) -> None:
                 ha="left" if beside else "right", va="top", fontsize=9)  # fmt: skip
 
 
-def _surface_points(result: Result, state: Group) -> np.ndarray:
+def _surface_points(result: Result, body: str, step: int | None) -> np.ndarray:
     """Points x across the frame of a picture, dense towards the edges of the contact, where the stress peaks."""
-    left, right = contact(result, [state])
-    touching = result.mesh.x[state.status != NodeStatus.OPEN]
+    left, right = contact(result, [result.at(step)])
     steps = (right - left) * np.geomspace(1.0e-5, 0.1, 40)
-    edges = touching[[0, -1]]
-    if "contact_edge" in state:  # along the surface
-        edges = np.interp(state.contact_edge[np.isfinite(state.contact_edge)], result.mesh.get("arc", result.mesh.x), result.mesh.x)
-    close = [edge + side * steps for edge in edges for side in (-1.0, 1.0)]
+    close = [edge + side * steps for edge in contact_edges(result, body, step) for side in (-1.0, 1.0)]
     points = np.unique(np.concatenate([np.linspace(left, right, 301), *close]))
     return points[(points >= left) & (points <= right)]
 

@@ -190,7 +190,7 @@ def _channel(name: str, reader: Any, channel: int | str | None) -> int:
 
 
 def _reason(library: Any, name: str) -> str:
-    """Why the reader for the suffix of a file cannot read it; empty if there is none."""
+    """Why the reader that the suffix of a file calls for cannot read it; empty if no reader has this suffix."""
     suffix = Path(name).suffix.lower().lstrip(".")
     for kind in library.readers:
         if suffix and suffix != "txt" and suffix in [kind.format(), *(getattr(kind, "_file_extensions", None) or [])]:

@@ -177,7 +177,17 @@ def beneath(result: Result, body: str, x: float, distance: Array, angle: ArrayLi
 
 def surface_nodes(result: Result, body: str) -> tuple[Array, Array, Array]:
     """Positions x, y of the nodes on the undeformed surface of a body, and its slope there."""
-    arc, radius = _arc(result), result.scene.get(f"{body}_radius")
+    return _surface_at(result, body, _arc(result))
+
+
+def contact_edges(result: Result, body: str, step: int | None = None) -> Array:
+    """Positions x of the edges of contact on the undeformed surface of a body, increasing; empty without load. `step`: as in `stress`."""
+    return _surface_at(result, body, _edges(result, step))[0]
+
+
+def _surface_at(result: Result, body: str, arc: Array) -> tuple[Array, Array, Array]:
+    """Positions x, y of points along the undeformed surface of a body, and its slope there."""
+    radius = result.scene.get(f"{body}_radius")
     if radius is None:
         return arc, np.zeros_like(arc), np.zeros_like(arc)
     is_radial = keys(result.attributes["input"]).get("mesh%normals", "vertical").lower() == "radial"
@@ -205,13 +215,21 @@ def _bulk_stress(result: Result, body: str, step: int | None) -> float:
 
 
 def _loaded_surface(result: Result, step: int | None) -> tuple[float, float]:
-    """Ends of the loaded surface, from interpolated edges if available; both 0 without load."""
+    """Ends of the loaded surface; both 0 without load."""
+    edges = _edges(result, step)
+    return (float(edges[0]), float(edges[-1])) if edges.size else (0.0, 0.0)
+
+
+def _edges(result: Result, step: int | None) -> Array:
+    """Positions along the surface of the edges of contact, increasing: interpolated ones if available, else the ends of the loaded
+    surface; empty without load."""
     state = result.at(step)
     loaded = (state.pressure != 0.0) | (state.shear != 0.0)
     if not loaded.any():
-        return 0.0, 0.0
-    edges = state.get("contact_edge", np.empty(0))
-    if np.isfinite(edges).any():
-        return float(np.nanmin(edges)), float(np.nanmax(edges))
+        return np.empty(0)
+    edges: Array = np.asarray(state.get("contact_edge", np.empty(0)))
+    edges = np.unique(edges[np.isfinite(edges)])
+    if edges.size > 1:
+        return edges
     arc, half = _arc(result)[loaded], 0.5 * result.mesh.width[loaded]
-    return float(np.min(arc - half)), float(np.max(arc + half))
+    return np.array([np.min(arc - half), np.max(arc + half)])

@@ -34,9 +34,9 @@ def record(seed: int) -> dict[str, Any]:
 def record_of(made: Problem, seed: int) -> dict[str, Any]:
     """What became of a problem: its fate, verdicts by quantity, differences by relation.
 
-    Fates: refused; judged; too long; ended alike; ends early (only on the problem's own mesh); goes on (only there); no limit (static and
-    kinetic friction: there is none); meshes disagree (the two fine ones); mesh too narrow (the contact
-    reaches the end of a mesh of given half-width, which it does sooner with wide intervals).
+    Fates: refused; judged; too long; ended alike; ends early (only on the problem's own mesh); goes on (only there); no limit (results
+    with static and kinetic friction do not converge with the mesh); meshes disagree (the two fine ones); mesh too narrow (the
+    contact becomes four times as wide as a given half-width, which it does sooner with wide intervals).
     """
     found: dict[str, Any] = {"seed": seed, **describe(made), "fate": "judged", "verdicts": {}, "relations": {}}
     try:

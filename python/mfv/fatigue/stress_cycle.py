@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..inputs import groups
 from ..load_history import LOADS, kept_states, stages
 from ..result import Result
-from ..stress import BODIES, stress, surface
+from ..stress import BODIES, contact_edges, stress, surface
 
 Array = NDArray[np.float64]
 
@@ -164,7 +164,9 @@ def graded_points(result: Result, *, body: str = "lower", depth: float = 1.0, fi
     """
     if body not in BODIES:
         raise ValueError(f"body must be 'lower' or 'upper', not '{body}'")
-    edges = _edges(result)
+    edges = contact_edges(result, body)
+    if edges.size < 2:
+        raise ValueError("no load in the last state")
     half = 0.5 * (edges[-1] - edges[0])
     away = half * np.logspace(np.log10(finest), 0.0, 25)
     regular = np.linspace(edges[0] - half, edges[-1] + half, 81)
@@ -178,19 +180,3 @@ def inside(result: Result, body: str, x: Array, depth: Array) -> Array:
     """y of points of a body at a `depth` below its surface, lengths."""
     y = surface(result, body, x) - depth
     return y if body == "lower" else -y
-
-
-def _edges(result: Result) -> Array:
-    """Positions of the edges of contact in the last state, in both bodies: lengths along the surface, which are x in a half-plane, and
-    x, where it is curved."""
-    edges: Array = np.asarray(result.state.get("contact_edge", np.empty(0)))
-    edges = np.unique(edges[np.isfinite(edges)])
-    edges = np.sort(np.concatenate([edges, np.interp(edges, result.mesh.get("arc", result.mesh.x), result.mesh.x)]))
-    edges = edges[np.diff(edges, prepend=-np.inf) > 1.0e-9 * np.ptp(result.mesh.x)]
-    if edges.size < 2:
-        loaded = np.flatnonzero(result.state.pressure > 0.0)
-        if not loaded.size:
-            raise ValueError("no load in the last state")
-        ends, half = loaded[[0, -1]], 0.5 * result.mesh.width
-        edges = result.mesh.x[ends] + np.array([-half[ends[0]], half[ends[1]]])
-    return edges

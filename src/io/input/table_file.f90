@@ -404,8 +404,8 @@ contains
                         ' rows, not '//shown(self%line(count_line))//'; complete it, or correct the number')
    end subroutine parse
 
-   !> Error unless the lines from `start` to before the `first` row (0: there is none) are text, or, after it, one whole number:
-   !> `counted`, in the line `count_line`, 0 for none.
+   !> Error unless the lines from `start` to the `first` row of numbers (0 if the file has no row) are text, except for one whole
+   !> number below the text, the number of rows: `counted`, in the line `count_line`, 0 if it is not given.
    subroutine check_head(text, start, first, columns, counted, count_line, error)
       class(text_type), intent(in) :: text
       integer, intent(in) :: start, first, columns
