@@ -31,3 +31,4 @@ class EventKind(IntEnum):
     CAUGHT = 10  #: a node satisfies its friction law again after a stress drop
     CAPPED = 11  #: a decreasing shear traction has reached the static limit, since the pressure falls faster
     DROPPED = 12  #: the end of a stress drop, at constant load
+    INCREMENT = 13  #: the end of a large increment, in which events are not located

@@ -5,7 +5,8 @@ module mfv_node_status
    public :: node_open, node_stick, node_slip_right, node_slip_left, node_frictionless, node_creep_right, node_creep_left, &
              node_status_names
    public :: event_none, event_close, event_open, event_slip_right, event_slip_left, event_stick, event_step_end, &
-             event_stopped, event_reverse, event_weakened, event_caught, event_capped, event_dropped, event_names, &
+             event_stopped, event_reverse, event_weakened, event_caught, event_capped, event_dropped, event_increment, &
+             event_names, &
              keeps_status, in_contact, slips, creeps, holds, slip_sign, motion_sign, is_among
 
    !> Node statuses. `node_frictionless`: in contact while friction is off or absent. `node_creep_right`, `node_creep_left`: held
@@ -18,12 +19,12 @@ module mfv_node_status
    !> `event_reverse`: a creeping node reverses its direction; `event_weakened`: the friction of a slipping node has decreased to
    !> its final value; `event_caught`: in a stress drop, the node satisfies its friction law again; `event_capped`: in a stress
    !> drop, the shear traction reaches the static limit, because the pressure decreases faster; `event_dropped`: the end of a
-   !> stress drop, at the load at which it began.
+   !> stress drop, at the load at which it began; `event_increment`: the end of a large increment, in which events are not located.
    integer, parameter :: event_none = 0, event_close = 1, event_open = 2, event_slip_right = 3, event_slip_left = 4, &
                          event_stick = 5, event_step_end = 6, event_stopped = 7, event_reverse = 8, event_weakened = 9, &
-                         event_caught = 10, event_capped = 11, event_dropped = 12
+                         event_caught = 10, event_capped = 11, event_dropped = 12, event_increment = 13
    character(*), parameter :: event_names = 'start close open slip_right slip_left stick step_end stopped reverse '// &
-                              'weakened caught capped dropped'
+                              'weakened caught capped dropped increment'
 
 contains
 

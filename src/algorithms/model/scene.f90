@@ -16,7 +16,8 @@ module mfv_scene
    public :: scene_type, both_rigid, mesh_request_type, step_type, method_type, control_keep, control_force, control_displacement, &
              most_cycles, most_of_datum, algorithm_mfv, algorithm_conventional, stepping_event, stepping_nominal, stepping_leap, &
              stepping_auto, integration_second_order, integration_explicit, solver_auto, solver_dgesv, solver_reduced, solver_fft, &
-             algorithm_names, stepping_names, integration_names, solver_names, friction_tolerance_part, most_by_points
+             algorithm_names, stepping_names, integration_names, solver_names, friction_tolerance_part, most_by_points, &
+             accuracy_by_mesh
 
    !> The Method of First Violation (dissertation section 2.3) or the conventional algorithm (2.2). Names here and below: values of
    !> the keys of &solver, in the order of the numbers.
@@ -78,12 +79,15 @@ module mfv_scene
       !> Tolerance of the relative residual of an iterative linear solver.
       real(wp) :: linear_tolerance = 1.0e-12_wp
       !> Allowed error of large increments: of tractions, relative to the largest; of the dissipation of a segment, relative to that
-      !> dissipation. 0: none, events are followed one by one.
+      !> dissipation. 0: none, only exact ones are taken; accuracy_by_mesh: see choose_stepping in mfv_linear_solvers.
       real(wp) :: accuracy = 0.0_wp
    contains
       procedure :: takes_accuracy
       procedure :: allowed_in_friction
    end type method_type
+
+   !> The accuracy of a method that has not been given one.
+   real(wp), parameter :: accuracy_by_mesh = -1.0_wp
 
    !> Part of the wanted error of dissipation that an increment with nonlinear friction may have in its tractions: load segments
    !> then have an error of 0.3 of the wanted one as a median, and of 1.6 at most (docs/verification.md).

@@ -10,11 +10,11 @@ module mfv_linear_solvers
    use mfv_krylov_system, only: krylov_system_type
    use mfv_reduced_system, only: reduced_system_type
    use mfv_scene
-   use mfv_solver_costs, only: least_coupled_leap, least_leap, most_after_increments, most_apart, most_at_once, &
+   use mfv_solver_costs, only: least_by_default, least_coupled_leap, least_leap, most_after_increments, most_apart, most_at_once, &
                                most_at_once_coupled, most_bristles, most_bristles_coupled, most_coupled, most_one_way
    implicit none
    private
-   public :: new_contact_system, chosen_stepping
+   public :: new_contact_system, choose_stepping
 
 contains
 
@@ -50,17 +50,25 @@ contains
       end select
    end subroutine new_contact_system
 
-   !> The stepping of the scene of a model. 'auto': large increments if they are allowed (Coulomb friction, an accuracy) and there
-   !> are enough nodes (mfv_solver_costs).
-   pure integer function chosen_stepping(model) result(stepping)
-      type(contact_model_type), intent(in) :: model
+   !> Choose the accuracy of the scene of a model, if it has none, and its stepping. 'auto': large increments with Coulomb friction
+   !> and enough nodes (mfv_solver_costs), where they can be exact or have an accuracy.
+   subroutine choose_stepping(model)
+      type(contact_model_type), intent(inout) :: model
+      !> Error of large increments without an accuracy: beside that of meshes of `least_by_default` nodes, about 1.5e-3.
+      real(wp), parameter :: usual = 1.0e-3_wp
+      logical :: coupled
 
-      stepping = model%scene%method%stepping
-      if (stepping /= stepping_auto) return
-      stepping = stepping_event
-      if (.not. model%scene%method%accuracy > 0.0_wp .or. .not. model%scene%friction%is_proportional()) return
-      if (model%nodes() >= merge(least_coupled_leap, least_leap, model%compliance%has_block(block_wt))) stepping = stepping_leap
-   end function chosen_stepping
+      coupled = model%compliance%has_block(block_wt)
+      associate (method => model%scene%method, proportional => model%scene%friction%is_proportional())
+         if (.not. method%accuracy >= 0.0_wp) &
+            method%accuracy = merge(usual, 0.0_wp, method%stepping == stepping_leap .or. method%stepping == stepping_auto .and. &
+                                    proportional .and. model%nodes() >= least_by_default)
+         if (method%stepping /= stepping_auto) return
+         method%stepping = stepping_event
+         if (.not. proportional .or. model%nodes() < merge(least_coupled_leap, least_leap, coupled)) return
+         if (method%accuracy > 0.0_wp .or. .not. coupled .and. model%compliance%is_half_plane) method%stepping = stepping_leap
+      end associate
+   end subroutine choose_stepping
 
    !> Most nodes in contact for the reduced system.
    pure integer function most_reduced(model) result(most)

@@ -4,7 +4,7 @@ module mfv_solver_costs
    use mfv_scene, only: solver_dgesv, solver_fft, solver_reduced
    implicit none
    private
-   public :: least_leap, least_coupled_leap
+   public :: least_by_default, least_leap, least_coupled_leap
    public :: cheapest_solver, seconds_of_solve, most_after_increments, most_coupled, most_one_way, most_apart, most_at_once, &
              most_at_once_coupled, most_bristles, most_bristles_coupled
 
@@ -24,9 +24,9 @@ module mfv_solver_costs
    !>                        m 270, n 8192: 0.14                           m 861, n 8192: 0.42
    !>
    !>     large increments   coupled                                       Goodman, uncoupled
-   !>     one patch          m 129: 0.31                                   m 32: 0.8
-   !>     (n = 2 m)          m 257: 0.47                                   m 64: 1.2
-   !>                        m 514: 0.96                                   m 128: 2.7
+   !>     one patch          m 192: 1.7 (pressed), 6.5 (cycles)            m 32: 0.8
+   !>     (n = 2 m)          m 256: 1.7 (pressed)                          m 64: 1.2
+   !>                                                                      m 128: 2.7
    !>     8 to 33 patches    m 221, n 2048: 0.40                           m 81, n 512: 0.9
    !>                        m 538, n 2048: 1.11                           m 223, n 2048: 2.7
    !>                        m 277, n 8192: 0.29                           m 541, n 2048: 14
@@ -40,7 +40,7 @@ module mfv_solver_costs
    !>
    !> In event stepping the limit is that of memory (100 MB coupled, else 2*30 MB) rather than of time.
    integer, parameter :: most_coupled = 1800, most_one_way = 2000, most_apart = 2000, most_at_once = 60, &
-                         most_at_once_coupled = 240, most_bristles = 120, most_bristles_coupled = 260
+                         most_at_once_coupled = 100, most_bristles = 120, most_bristles_coupled = 260
 
    !> Most nodes in contact for the reduced system in an interval that is followed by events because large increments are too many
    !> or not accurate: the system is factorised anew for some hundred events.
@@ -50,6 +50,9 @@ module mfv_solver_costs
    !> to press with friction and coupling and 20 to 60 for a half-cycle, on any mesh, events about one for each node that
    !> changes its status (docs/performance.md). Without coupling they take 4 solves.
    integer, parameter :: least_leap = 30, least_coupled_leap = 384
+
+   !> Fewest nodes of the mesh for which large increments may have an error although no accuracy is given.
+   integer, parameter :: least_by_default = 384
 
 contains
 

@@ -16,7 +16,7 @@ module mfv_chain
    use mfv_straight, only: find_statuses_on_mesh
    implicit none
    private
-   public :: chain_type, make_chain, add_samples, find_rates_after
+   public :: chain_type, make_chain, add_samples, find_rates_after, error_at_start
 
    !> Where contact begins, event stepping resolves the touching of single nodes. The shear tractions next to that point, or next to
    !> the edge of a contact without slip zones, differ by up to this, relative to the largest traction, over the number of nodes in

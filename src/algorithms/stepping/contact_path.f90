@@ -13,14 +13,14 @@ module mfv_contact_path
    use mfv_friction_law, only: friction_event_type, friction_point_type, most_events
    use mfv_history, only: history_type
    use mfv_kinds, only: wp
-   use mfv_linear_solvers, only: chosen_stepping, new_contact_system
+   use mfv_linear_solvers, only: choose_stepping, new_contact_system
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_wear, control_force, &
                           control_displacement
    use mfv_node_status
    use mfv_observer, only: observer_type
    use mfv_recent_intervals, only: recent_intervals_type
    use mfv_rolling, only: rolling_type
-   use mfv_scene, only: algorithm_mfv, stepping_leap
+   use mfv_scene, only: algorithm_mfv, stepping_event
    use mfv_slip_zones, only: widest_slip_zone
    use mfv_status
    use mfv_strings, only: to_text
@@ -42,7 +42,7 @@ module mfv_contact_path
    !> The first increment after a turning point of the tangential load, whatever the segments that follow it one way.
    type :: leaving_type
       !> Tangential stiffness, force/length^2. NaN: not yet known (`pending`), or not defined (nominal load steps, large
-      !> increments).
+      !> increments whose rates at the start are not known).
       real(wp) :: stiffness = 0.0_wp
       !> Tangential force and shift at the turning point; the control of the load, negative where it decreases, 0: it is held.
       real(wp) :: force = 0.0_wp, shift = 0.0_wp
@@ -96,6 +96,7 @@ module mfv_contact_path
       procedure :: resume
       procedure :: notify
       procedure :: note_start
+      procedure :: note_stiffness
       procedure :: begin_motion
       procedure :: begin_wear
       procedure :: wear_at_once
@@ -117,6 +118,7 @@ module mfv_contact_path
       procedure :: holding
       procedure :: take_increment
       procedure :: record_changes
+      procedure :: record_increment
       procedure :: extend_mesh_if_reached
       procedure :: widen
       procedure :: lengthens_for
@@ -161,7 +163,7 @@ contains
       type(contact_path_type), intent(out) :: self
 
       self%model = model
-      self%model%scene%method%stepping = chosen_stepping(model)
+      call choose_stepping(self%model)
       call new_contact_system(self%model, self%system)
       self%state = new_contact_state(model%nodes(), model%scene%wear%acts())
       associate (fields => self%state%fields)
@@ -174,7 +176,7 @@ contains
       self%record_events = record_events
    end subroutine new_contact_path
 
-   !> Derive with respect to `parameters` from now on. Keys: only before the first step.
+   !> Derive with respect to `parameters` from now on, through every event. Keys: only before the first step.
    subroutine differentiate(self, parameters)
       class(contact_path_type), intent(inout) :: self
       type(parameter_type), intent(in) :: parameters(:)
@@ -185,6 +187,7 @@ contains
       allocate (self%parameters, source=parameters)
       allocate (self%derivatives)
       call self%derivatives%begin(self%parameters, self%model, self%state%fields)
+      self%model%scene%method%stepping = stepping_event
    end subroutine differentiate
 
    !> Derivatives of the displacements after the mesh or the problem has changed.
@@ -284,25 +287,22 @@ contains
          if (abs(shift%rate) > 0.0_wp) direction = nint(sign(real(shift%control, wp), shift%rate))
          if (direction /= 0 .and. direction == self%leaving%direction) return
          self%leaving = leaving_type(ieee_value(1.0_wp, ieee_quiet_nan), fields%force(motion_shift), fields%motion(motion_shift), &
-                                     direction, method%algorithm == algorithm_mfv .and. method%stepping /= stepping_leap)
+                                     direction, method%algorithm == algorithm_mfv)
       end associate
    end subroutine note_start
 
-   !> Set the stiffness on leaving a turning point once the tangential force has changed by more than round-off. It is undefined for
-   !> a held shift.
-   subroutine find_stiffness_on_leaving(self)
+   !> Set the pending stiffness on leaving a turning point, if the change of the tangential force since then is more than round-off.
+   !> It is undefined for a held shift. `force`, force, and `shift`, length: changes, or rates over the load segment.
+   subroutine note_stiffness(self, force, shift)
       class(contact_path_type), intent(inout) :: self
+      real(wp), intent(in) :: force, shift
       real(wp), parameter :: visible = 1.0e-6_wp
-      real(wp) :: force, shift
 
-      associate (fields => self%state%fields, leaving => self%leaving)
-         force = fields%force(motion_shift) - leaving%force
-         shift = fields%motion(motion_shift) - leaving%shift
-         if (.not. abs(force) > visible*self%model%friction_scale*fields%force(motion_approach)) return
-         leaving%pending = .false.
-         if (abs(force) < self%model%largest_stiffness()*abs(shift)) leaving%stiffness = force/shift
-      end associate
-   end subroutine find_stiffness_on_leaving
+      if (.not. self%leaving%pending) return
+      if (.not. abs(force) > visible*self%model%friction_scale*self%state%fields%force(motion_approach)) return
+      self%leaving%pending = .false.
+      if (abs(force) < self%model%largest_stiffness()*abs(shift)) self%leaving%stiffness = force/shift
+   end subroutine note_stiffness
 
    !> Switch friction on or off at the nodes in contact. The first friction starts the tangential problem. Error
    !> MFV_INADMISSIBLE_STEP: friction is switched off under shear traction.
@@ -782,7 +782,10 @@ contains
          if (abs(slip_rate(i)) > moving*fastest) self%state%slip_direction(i) = merge(1, -1, slip_rate(i) > 0.0_wp)
       end do
       call self%certificate%check_increment(self%model, self%before, self%state, present(friction_work))
-      if (self%leaving%pending) call find_stiffness_on_leaving(self)
+      if (present(friction_work)) self%leaving%pending = .false.
+      associate (fields => self%state%fields, leaving => self%leaving)
+         call self%note_stiffness(fields%force(motion_shift) - leaving%force, fields%motion(motion_shift) - leaving%shift)
+      end associate
       call note_slip_zones(self)
       if (.not. self%model%moves(motion_rotation) .or. dropped > 0.0_wp) return
       associate (before => self%before%fields)
@@ -899,6 +902,16 @@ contains
 
       call self%history%append(self%state, kind, node, count, step, self%system%solves)
    end subroutine record
+
+   !> Record the end of a large increment of a segment, unless the end of the segment is recorded there.
+   subroutine record_increment(self, segment, reached)
+      class(contact_path_type), intent(inout) :: self
+      type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: reached
+
+      if (self%record_events .and. segment%from + reached*(segment%to - segment%from) < 1.0_wp) &
+         call self%record(event_increment, 0, 0, segment%step)
+   end subroutine record_increment
 
    !> The statuses at this load are final: count and record the change.
    subroutine record_changes(self, segment, iteration)

@@ -78,12 +78,24 @@ contains
       type(segment_type), intent(in) :: segment
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
+
+      call path%start_segment(segment, error)
+      if (allocated(error)) return
+      path%system%one_by_one = .true.
+      call advance_by_events(path, segment, observer, error)
+      path%system%one_by_one = .false.
+   end subroutine apply_by_violations
+
+   !> Advance through a segment that has started, from event to event. Errors as apply_by_violations.
+   subroutine advance_by_events(path, segment, observer, error)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      class(observer_type), intent(inout), optional :: observer
+      type(error_type), allocatable, intent(out) :: error
       type(progress_type) :: progress
       type(constraints_type) :: constraints
       integer :: nodes
 
-      call path%start_segment(segment, error)
-      if (allocated(error)) return
       progress%from_nothing = .not. any(path%state%fields%pressure > 0.0_wp)
       nodes = size(path%state%status)
       do
@@ -102,7 +114,7 @@ contains
          call change_statuses(path, segment, progress%done, progress%increment, progress%iteration, error)
          if (allocated(error)) return
       end do
-   end subroutine apply_by_violations
+   end subroutine advance_by_events
 
    !> Find the next increment at fixed statuses and take it. If its length is zero (`progress%moved` is false), only statuses
    !> change. Errors as apply_by_violations.

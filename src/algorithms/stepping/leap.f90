@@ -13,7 +13,7 @@
 !> An interval that would take more solves than it has events is applied by events (mfv_first_violation), which are exact; gross
 !> sliding and separation are therefore found there. The certificate checks large increments at their ends only.
 module mfv_leap
-   use mfv_active_set, only: find_rates, slipping_back
+   use mfv_active_set, only: find_rates, first_guess, slipping_back
    use mfv_chain
    use mfv_chain_dissipation, only: chain_dissipation, dissipation_by_rates, dissipation_by_slopes, sample_type, &
                                     straight_dissipation
@@ -35,8 +35,8 @@ module mfv_leap
 
    !> An interval shorter than this fraction of a segment is not divided where no statuses are found.
    real(wp), parameter :: shortest = 0.2_wp
-   !> Most increments of an interval.
-   integer, parameter :: most_increments = 64
+   !> Most increments of an interval; those of an exact one, for the history.
+   integer, parameter :: most_increments = 64, recorded = 8
    !> Linear solves of event stepping per change of status. Less than one, since event stepping can update the inverse from solve
    !> to solve, and a large increment cannot.
    real(wp), parameter :: solves_per_change = 0.6_wp
@@ -61,7 +61,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(progress_type) :: progress
 
-      if (.not. (segment%friction .and. path%model%scene%friction%acts())) then
+      if (.not. (segment%friction .and. path%model%scene%friction%acts() .and. &
+                 (path%model%scene%method%accuracy > 0.0_wp .or. is_exact(path, segment)))) then
          call apply_directly(path, segment, observer, error)
          return
       end if
@@ -93,6 +94,8 @@ contains
 
       associate (done => progress%done, goal => progress%goal, length => progress%length)
          interval = subsegment(segment, done, done + length)
+         progress%by_violations = begins_on_few_nodes(path, interval)
+         if (progress%by_violations) return
          call refine(path, interval, chain, accepted)
          if (accepted .and. path%system%allowed > 0.0_wp) call finish_chain(path, interval, chain, accepted)
          path%system%allowed = 0.0_wp
@@ -114,6 +117,18 @@ contains
       end associate
    end subroutine try_large_increments
 
+   !> Whether contact begins on so few nodes that large increments with coupling would not be accurate.
+   logical function begins_on_few_nodes(path, interval) result(few)
+      class(contact_path_type), intent(in) :: path
+      type(segment_type), intent(in) :: interval
+      logical :: contact(size(path%state%status))
+
+      few = path%model%compliance%has_block(block_wt) .and. .not. any(in_contact(path%state%status))
+      if (.not. few) return
+      call first_guess(path, interval, 1.0_wp, contact)
+      few = count(contact) < error_at_start/path%model%scene%method%accuracy
+   end function begins_on_few_nodes
+
    !> Apply the next interval by events.
    subroutine continue_by_violations(path, segment, progress, observer, error)
       class(contact_path_type), intent(inout) :: path
@@ -123,9 +138,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       associate (done => progress%done, goal => progress%goal, length => progress%length)
-         path%system%one_by_one = .true.
          call apply_by_violations(path, subsegment(segment, done, done + length), observer, error)
-         path%system%one_by_one = .false.
          if (allocated(error)) return
          progress%by_violations = .false.
          done = merge(goal, done + length, length >= goal - done)
@@ -147,10 +160,11 @@ contains
       accepted = .false.
       call allow_errors(path)
       if (may_depend_on_path(path, interval)) call find_start(path, interval, start)
-      call make_chain(path, interval, 1, start, chain)
+      call find_stiffness(path, interval, start)
+      accepted = is_exact(path, interval)
+      call make_chain(path, interval, merge(recorded, 1, accepted .and. path%record_events), start, chain)
+      if (.not. chain%found) accepted = .false.
       if (.not. chain%found) return
-      accepted = .not. (may_depend_on_path(path, interval) .or. any(slips(chain%before(1)%status)) .or. &
-                        has_shear(path, chain%after(1))) .or. slips_one_way(path, interval)
       if (accepted .or. chain%start_error > path%model%scene%method%accuracy &
           *max(path%certificate%traction_scale, chain%traction)) return
       increments = 2
@@ -402,6 +416,29 @@ contains
       path%state = start
    end subroutine find_start
 
+   !> Find the stiffness on leaving a turning point, if it is pending, from the rates at the start of an interval. Under constant
+   !> pressures all nodes in contact stick there. `start`: see find_start.
+   subroutine find_stiffness(path, interval, start)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: interval
+      type(sample_type), intent(in) :: start
+      type(contact_state_type) :: present_state
+      type(contact_fields_type) :: rates
+      logical :: found
+
+      if (.not. path%leaving%pending .or. .not. abs(interval%load(motion_shift)%rate) > 0.0_wp) return
+      found = allocated(start%status)
+      if (found) then
+         rates = start%rates
+      else if (has_constant_pressures(path, interval) .and. any(in_contact(path%state%status))) then
+         present_state = path%state
+         call path%set_status(in_contact(path%state%status), spread(node_stick, 1, size(path%state%status)))
+         call find_rates(path, interval, 0.0_wp, path%state%fields, rates, found)
+         path%state = present_state
+      end if
+      if (found) call path%note_stiffness(rates%force(motion_shift), rates%motion(motion_shift))
+   end subroutine find_stiffness
+
    !> Whether the pressures do not change: nodes that slip then stick at reversals only.
    pure logical function has_constant_pressures(path, segment)
       class(contact_path_type), intent(in) :: path
@@ -413,6 +450,14 @@ contains
       has_constant_pressures = .not. path%model%compliance%has_block(block_wt) .and. .not. path%model%has_rigid_parts() .and. &
                                .not. any(abs(segment%load%rate) > 0.0_wp .and. normal)
    end function has_constant_pressures
+
+   !> Whether a segment needs no more than one increment.
+   logical function is_exact(path, segment)
+      class(contact_path_type), intent(in) :: path
+      type(segment_type), intent(in) :: segment
+
+      is_exact = slips_one_way(path, segment) .or. .not. may_depend_on_path(path, segment)
+   end function is_exact
 
    !> Whether nodes slip in the direction of the load only, and one increment is therefore exact: on half-planes under constant
    !> pressures. The rates are those under rigid punches, the stick zones, that move together. By the maximum principle of the
@@ -551,6 +596,7 @@ contains
          path%state%stuck_slip = chain%before(i)%stuck_slip
          call path%take_increment(chain%after(i), chain%after(i)%slip() - path%state%fields%slip(), 0.0_wp, &
                                   friction_work=share*chain%friction_work(:, i))
+         call path%record_increment(interval, real(i, wp)/chain%increments)
       end do
       if (shares_work(chain)) &
          path%work_error = path%work_error + error_of_works(chain, path%work - before)/path%model%scene%method%accuracy

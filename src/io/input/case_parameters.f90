@@ -40,7 +40,7 @@ contains
       character(:), allocatable :: why
       integer :: i
 
-      call find_obstacle(simulation, why)
+      call find_obstacle(case, simulation, why)
       if (why /= '') then
          call set_error(error, MFV_BAD_ARGUMENT, why)
          return
@@ -56,7 +56,8 @@ contains
    end subroutine read_parameters
 
    !> Why a simulation cannot be differentiated; empty if it can.
-   subroutine find_obstacle(simulation, why)
+   subroutine find_obstacle(case, simulation, why)
+      type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
       character(:), allocatable, intent(out) :: why
 
@@ -64,8 +65,8 @@ contains
       associate (scene => simulation%contact%model%scene)
          if (scene%method%algorithm /= algorithm_mfv) then
             why = "derivatives need algorithm='mfv'"
-         else if (scene%method%stepping == stepping_leap) then
-            why = "derivatives need every event: set stepping='event', or accuracy=0"
+         else if (case%scene%method%stepping == stepping_leap) then
+            why = "derivatives need every event: remove stepping='leap'"
          else if (scene%friction%acts() .and. .not. scene%friction%is_proportional()) then
             why = "derivatives need Coulomb's law or no friction, not law='"//trim(scene%friction%name())//"'"
          else if (scene%wear%acts()) then

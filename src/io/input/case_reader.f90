@@ -151,8 +151,6 @@ contains
          call reader%complain('solver', 1, 'stepping', "has no effect with algorithm='conventional'; remove it", error)
       else if (method%stepping == stepping_leap .and. allocated(friction%law) .and. .not. friction%is_proportional()) then
          call reader%complain('solver', 1, 'stepping', "'leap' needs law='coulomb' or 'none', not '"//law//"'", error)
-      else if (method%stepping == stepping_leap .and. .not. method%accuracy > 0.0_wp) then
-         call reader%complain('solver', 1, 'stepping', "'leap' needs an accuracy above 0", error)
       else if (method%accuracy > 0.0_wp .and. .not. method%takes_accuracy()) then
          call reader%complain('solver', 1, 'accuracy', "has an effect with stepping='auto' or 'leap' only; remove it", error)
       end if
@@ -167,7 +165,8 @@ contains
       method%stepping = reader%choice('solver', 1, 'stepping')
       method%linear_solver = reader%choice('solver', 1, 'linear_solver')
       method%linear_tolerance = reader%real_value('solver', 1, 'linear_tolerance')
-      method%accuracy = reader%real_value('solver', 1, 'accuracy')
+      method%accuracy = accuracy_by_mesh
+      if (reader%has('solver', 1, 'accuracy')) method%accuracy = reader%real_value('solver', 1, 'accuracy')
       method%integration = reader%choice('solver', 1, 'integration')
       method%load_step = reader%real_value('solver', 1, 'load_step')
       if (reader%has('solver', 1, 'friction_tolerance')) &
