@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from .._datum import datums_of, with_datums
 from .._packages import needed
 from ..errors import MfvError, input_error
-from ..scene import Output, Scene, Step
+from ..scene import Output, Scene, Solver, Step
 from ..studies.axes import Axis
 from .estimate import UNDETERMINED, Estimate
 from .loop import Loop
@@ -303,8 +303,9 @@ class Problem:
         scene = copy.copy(self.scene)
         for part in ("lower", "upper", "friction", "mesh", "solver"):
             setattr(scene, part, copy.copy(getattr(scene, part)))
-        if scene.solver is not None:
-            scene.solver.accuracy = scene.solver.stepping = None  # rows are interpolated between events
+        scene.solver = scene.solver or Solver()
+        if scene.solver.algorithm != "conventional":
+            scene.solver.accuracy, scene.solver.stepping = None, "event"  # rows are interpolated between events
         scene.steps = [Step(normal_force=loop.normal_force, friction=loop.pressed_with_friction)]
         scene.output = Output(history="events", states="none")
         parts: dict[str, Any] = dict(scene._parts())

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from .._datum import datums_of
 from ..result import Group, Result
-from ..scene import Scene, Step
+from ..scene import Scene, Solver, Step
 from .backbone import Backbone
 
 Array = NDArray[np.float64]
@@ -103,7 +103,7 @@ def measure(scene: Scene, force_ratios: Sequence[float] = RATIOS, *, repeats: in
     then constant. They may shear the bodies, but must end at a tangential force of 0. `force_ratios`: Q/(mu P), increasing, between
     0 and 1. `repeats`: cycles of every amplitude, of which the last is returned; with full coupling the first one differs. With
     refine='edges' in the mesh the intervals are small where slip zones end at these amplitudes; the backbone has the same mesh.
-    Every event is a point, so `accuracy` of the solver must be 0. If Masing's rules on first loading do not give the cycles, the
+    Every event is a point (`stepping`='event'). If Masing's rules on first loading do not give the cycles, the
     backbone says so (`doubt`), and fits refuse it.
     Raises ValueError, InputError, and the exception of a run that ends early.
     """
@@ -120,6 +120,7 @@ def measure(scene: Scene, force_ratios: Sequence[float] = RATIOS, *, repeats: in
         )
     sheared = copy.deepcopy(scene)
     sheared.output = None
+    sheared.solver = _by_events(scene)
     for ratio in ratios:
         sheared.steps += [Step(force_ratio=ratio), Step(force_ratio=-ratio, cycles=repeats)]
     result = sheared.run(check=True)
@@ -192,6 +193,7 @@ def _backbone(scene: Scene, result: Result, force: float) -> Backbone:
     """First loading of a scene on the mesh of a result, to a force, and on until all slides."""
     pressed = copy.deepcopy(scene)
     pressed.output = None
+    pressed.solver = _by_events(scene)
     if pressed.mesh is not None and pressed.mesh.refine == "edges":
         others = {"refine": None, "nodes": None, "half_width": None, "half_angle": None}
         pressed.mesh = dataclasses.replace(pressed.mesh, ends=_wider(result.mesh), **others)
@@ -208,6 +210,11 @@ def _backbone(scene: Scene, result: Result, force: float) -> Backbone:
     forces = history.tangential_force[sheared]
     forces[0] = 0.0  # it may be round-off
     return _points(history.shift[sheared] - origin.shift, forces)
+
+
+def _by_events(scene: Scene) -> Solver:
+    """The solver of a scene, but with every event."""
+    return dataclasses.replace(scene.solver or Solver(), accuracy=None, stepping="event")
 
 
 def _wider(mesh: Group) -> Array:

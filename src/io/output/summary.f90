@@ -67,7 +67,8 @@ contains
          words = words//trim(numbered(simulation%contact%system%solves, 'linear solve'))
          call add_line(text, 'work', words//' ('//trim(simulation%contact%system%name)//'), '//to_text(seconds, 3)//' s')
          call add_line(text, 'certificate', 'largest relative residual '//amount(fields, 'largest_residual'))
-         if (field_named(fields, 'increment_traction_error') > 0) &
+         if (max(simulation%contact%certificate%increment_traction_error, &
+                 simulation%contact%certificate%increment_dissipation_error) > 0.0_wp) &
             call add_line(text, 'large increments', 'estimated errors: '// &
                           to_text(simulation%contact%certificate%increment_traction_error, 2)// &
                           ' of the largest traction, '// &
