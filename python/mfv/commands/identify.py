@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 from .._files import PICTURES, target, written
 from ..errors import MfvError
@@ -31,6 +32,18 @@ examples:
   mfv identify rig.nml daq.txt --free friction%mu=0.6 --column shift=LVDT --unit shift=um --thickness 8
                                       columns of other names and units; forces, not forces per thickness
 """
+
+
+class _Pairs(argparse.Action):
+    """Collects pairs of a name and a value; a name given twice is an error."""
+
+    def __call__(
+        self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, pair: Any, option: str | None = None
+    ) -> None:
+        pairs = getattr(namespace, self.dest)
+        if pair[0] in dict(pairs):
+            raise argparse.ArgumentError(self, f"{pair[0]} is given twice")
+        setattr(namespace, self.dest, [*pairs, pair])
 
 
 def _free(text: str) -> tuple[str, float]:
@@ -67,7 +80,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     complete_files(parser.add_argument("file", type=Path, metavar="CASE.nml", help="case; its steps are not used"), "nml")
     complete_files(parser.add_argument("other", type=Path, metavar="LOOPS.csv", help="measured loops"), "csv")
     parser.add_argument(
-        "--free", type=_free, action="append", required=True, metavar="KEY=START", help="a parameter and its start value; repeat it"
+        "--free",
+        type=_free,
+        action=_Pairs,
+        default=[],
+        required=True,
+        metavar="KEY=START",
+        help="a parameter and its start value; repeat it",
     )
     parser.add_argument(
         "--shift", action="append", default=[], metavar="TEST", help="test in which the shift is prescribed; repeat it"
@@ -76,18 +95,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--column",
         type=_pair,
-        action="append",
+        action=_Pairs,
         default=[],
         metavar="C=NAME",
         help=f"name of a column in the file, or its number from 1; C: {columns}",
     )
-    parser.add_argument("--unit", type=_pair, action="append", default=[], metavar="C=UNIT", help="unit of a column in the file")
+    parser.add_argument("--unit", type=_pair, action=_Pairs, default=[], metavar="C=UNIT", help="unit of a column in the file")
     parser.add_argument("--reverse", action="append", default=[], metavar="C", help="change the sign of a column")
     parser.add_argument("--thickness", type=float, metavar="LENGTH", help="divides columns that are forces")
     parser.add_argument(
         "--prior",
         type=_prior,
-        action="append",
+        action=_Pairs,
         default=[],
         metavar="NAME=WIDTH",
         help="standard deviation of lag [degrees], drift, offset or slack [parts of half the range], 0 for none; repeat it",
