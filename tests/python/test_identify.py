@@ -259,7 +259,11 @@ def test_tables_and_files(tmp_path: Path) -> None:
         (b"Q,U,P\n1,1,100\n,2,100\n3,3,100\n4,4,100\n5,5,100\n", " the columns must be finite numbers; remove the rows with gaps"),
         (b"Q,U,P\n1,1,100\n2,far,100\n", "3:3: column U: 'far' is not a number"),
         (b"Q,U,P,test\n1,1,100,a\n2,2,100,\n", " column test has empty cells"),
-        (b"Q,U,P\n1,1\n", "2: must have 3 cells, as many as the names of the columns, not '1,1'"),
+        (b"Q,U,P\n1,1\n", "2: must have 3 cells, as many as the names of the columns, not the 2 of '1,1'"),
+        (
+            b"Q,U,P\n1,5,2,5,100\n",
+            "2: must have 3 cells, as many as the names of the columns, not the 5 of '1,5,2,5,100'; with decimal commas",
+        ),
         (b"Q,U,P\n", " no rows; needs a line with the names of the columns"),
         (b"", " no rows; needs a line with the names of the columns"),
         (b"Q,U,P\n1,1,\xb5\n", "2:5: column P: '\xb5' is not a number"),
@@ -313,6 +317,15 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     ):
         assert main(["identify", *arguments]) == 2
         assert complaint in capsys.readouterr().err
+    for option, first, second in (
+        ("--free", "friction%mu=0.5", "friction%mu = 0.6"),
+        ("--column", "shift=U", "shift=V"),
+        ("--unit", "shift=um", "shift=mm"),
+        ("--prior", "lag=1", "lag=2"),
+    ):
+        with pytest.raises(SystemExit):
+            main(["identify", str(case), str(loops), "--free", "rig_stiffness=8e4", option, first, option, second])
+        assert f"argument {option}: {first.partition('=')[0]} is given twice" in capsys.readouterr().err
     for prior in ("lag=x", "phase=1", "drift=-1"):
         with pytest.raises(SystemExit):
             main(["identify", str(case), str(loops), *start, "--prior", prior])

@@ -148,6 +148,20 @@ def test_units_of_texts(tmp_path: Path) -> None:
             profiles.read(path, lambda_s=0.8)
 
 
+def test_options_of_maps_are_refused_where_they_have_no_effect(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "trace.csv"
+    path.write_text("x [mm] z [mm]\n0 1\n1 2\n2 4\n")
+    for options, words in (
+        ({"line": 1}, "line would have no effect: remove line"),
+        ({"line": "middle", "along": "x"}, "line, along would have no effect: remove line, along"),
+        ({"channel": 1}, "channel would have no effect"),
+    ):
+        with pytest.raises(errors.InputError, match=f"trace.csv: is a text with one profile, for which {words}"):
+            profiles.read(path, **options)
+    assert main(["profile", str(path), "--channel", "Height"]) == 2
+    assert "trace.csv: is a text with one profile, for which channel would have no effect" in capsys.readouterr().err
+
+
 def test_points_without_a_position_are_omitted(tmp_path: Path) -> None:
     path = tmp_path / "trace.txt"
     path.write_text("x [mm] z [mm]\n0 1\nnan nan\n1 2\n2 nan\n3 1\n")

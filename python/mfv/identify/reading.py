@@ -24,13 +24,13 @@ _COLUMNS = {
 }
 
 #: Units of a column of times, in lower case; one with another unit is a temperature or a thickness.
-_TIMES = ("", "s", "sec", "seconds", "ms", "us", "µs", "min", "h", "d", "cycles")
+_TIMES = ("", "s", "sec", "second", "seconds", "ms", "us", "µs", "min", "minutes", "h", "hours", "d", "days", "cycles", "-")
 
 
 def read(path: str | os.PathLike[str], **options: Any) -> list[Loop]:
     """The loops of a text file: columns Q, U and P (or tangential_force, shift, normal_force) under a line with their names, which may
     have units, as spreadsheets and programs write them (`mfv.tables`); a column `test` separates several tests, and `time` gives the
-    times of rows. `options`: those of `loops_of`.
+    times of rows, in numbers or as times of the day, with or without dates. `options`: those of `loops_of`.
 
     Raises OSError, InputError.
     """
@@ -122,28 +122,38 @@ def _loops(
     pressing = np.full(force.size, normal_force) if normal_force is not None else values["normal_force"]
     time = found.get("time")
     if "test" not in found:
-        return [Loop(force, shift, pressing, name=name, time=_times(time, slice(None)), **options)]  # type: ignore[arg-type]  # it takes the mean
+        return [Loop(force, shift, pressing, name=name, **_times(time, slice(None)), **options)]  # type: ignore[arg-type]  # it takes the mean
     tests = np.asarray(found["test"].values)
     if tests.shape != force.shape:
         raise input_error(f"{found['test'].label} has {tests.size} rows; {found['tangential_force'].label} has {force.size}")
     if any(test is None or test == "" or test != test for test in tests.tolist()):
         raise input_error(f"{found['test'].label} has empty cells; give every row the name of its test")
     return [
-        Loop(force[rows], shift[rows], pressing[rows], name=f"{name}: {test}", time=_times(time, rows), **options)
+        Loop(force[rows], shift[rows], pressing[rows], name=f"{name}: {test}", **_times(time, rows), **options)
         for test in dict.fromkeys(tests.tolist())
         for rows in [tests == test]
     ]
 
 
-def _times(column: tables.Column | None, rows: Any) -> np.ndarray | None:
-    """The times of the rows of a test; none if they are not increasing numbers, such as times of the day, or have another unit."""
-    if column is None or column.unit.lower() not in _TIMES:
-        return None
-    try:
-        times = column.numbers()[rows]
-    except MfvError:
-        return None
-    return times if np.all(np.diff(times) > 0.0) else None
+def _times(column: tables.Column | None, rows: Any) -> dict[str, Any]:
+    """The times of the rows of a test, as keys of `Loop`; a note if they cannot be used. A column t with another unit is not time."""
+    if column is None:
+        return {}
+    times = column.seconds()
+    if times is None:
+        if column.unit.lower() not in _TIMES:
+            is_other = tables.name_of(column.name) == "t"
+            return {} if is_other else {"notes": (f"{column.label} is not used: {column.unit} is not a unit of time",)}
+        try:
+            times = column.numbers()
+        except MfvError as error:
+            return {"notes": (f"{error} or a time of the day such as 12:03:04.5; the column is not used",)}
+    times = times[rows]
+    stops = np.flatnonzero(~(np.diff(times) > 0.0))
+    if stops.size:
+        place = np.arange(len(column.values))[rows][stops[0]] + 1
+        return {"notes": (f"{column.label} is not used: it does not increase from row {place} to the next",)}
+    return {"time": times}
 
 
 def _force_scale(label: str, unit: str, length_unit: str, force_unit: str, thickness: float | None) -> float:
