@@ -89,15 +89,15 @@ def name_of(text: str) -> str:
     return bare.strip().lower()
 
 
-def factor(unit: str, to: str) -> float:
-    """Units `to` per `unit`. Raises InputError for an unknown unit, and for units of different quantities."""
-    here, there = _size(unit), _size(to)
+def factor(unit: str, to: str, label: str = "") -> float:
+    """Units `to` per `unit`, of the column with a label. Raises InputError for an unknown unit, and for units of different quantities."""
+    here, there = _size(unit, label), _size(to)
     if here[1] != there[1]:
-        raise input_error(f"a value in {unit} is a {here[1]} and cannot be in {to}, which is for a {there[1]}")
+        raise input_error(f"{_of(label)}a value in {unit} is a {here[1]} and cannot be in {to}, which is for a {there[1]}")
     return here[0] / there[0]
 
 
-def _size(unit: str) -> tuple[float, str]:
+def _size(unit: str, label: str = "") -> tuple[float, str]:
     """A unit in SI units, and its quantity. Raises InputError."""
     known = known_unit(unit) or unit
     force, per, length = known.partition("/")
@@ -108,13 +108,18 @@ def _size(unit: str) -> tuple[float, str]:
     if per and force in FORCES and length in LENGTHS:
         return FORCES[force] / LENGTHS[length], "force per length"
     raise input_error(
-        f"unknown unit '{unit}'; known are {', '.join(LENGTHS)}; {', '.join(FORCES)}; and forces per length, such as N/mm"
+        f"{_of(label)}unknown unit '{unit}'; known are {', '.join(LENGTHS)}; {', '.join(FORCES)}; and forces per length, such as N/mm"
     )
 
 
-def is_force(unit: str) -> bool:
-    """Whether a unit is one of force, not of force per length."""
-    return _size(unit)[1] == "force"
+def _of(label: str) -> str:
+    """The beginning of a message about a column, if there is one."""
+    return f"{label}: " if label else ""
+
+
+def is_force(unit: str, label: str = "") -> bool:
+    """Whether a unit, of the column with a label, is one of force, not of force per length. Raises InputError."""
+    return _size(unit, label)[1] == "force"
 
 
 # --- lines ---
@@ -464,14 +469,23 @@ def _day(date: str) -> int | None:
     return None
 
 
-class Rows(NamedTuple):
-    """The line and the names of the heading of a table, the lines and cells of its rows, and whether commas are decimal marks."""
+@dataclass
+class Rows:
+    """A table in a text file: line and names of its heading, lines of its rows, places from 0 of the columns of texts, and whether
+    commas are decimal marks."""
 
+    file: str
+    text: list[str]
     header: int
     names: list[str]
     lines: list[int]
-    cells: list[list[str]]
+    texts: list[int]
     decimal_comma: bool
+
+    def cells(self, line: int) -> list[str]:
+        """The cells of a row. Raises InputError for another number of them than of names."""
+        cells = _cells_of(self.file, line, self.text, len(self.names), self.decimal_comma)
+        return [_without_quotes(cell) if place in self.texts else cell for place, cell in enumerate(cells)]
 
     def number(self, cell: str) -> float:
         """The number in a cell; NaN for anything else."""
@@ -525,11 +539,10 @@ def read_rows(path: str | os.PathLike[str], are_texts: Container[str]) -> Rows:
     name, lines = os.fspath(path), _joined(_lines(path))
     header = next((number for number, line in enumerate(lines, start=1) if not _is_comment(line)), 0)
     names = _headings(lines[header - 1]) if header else []
-    places = [place for place, heading in enumerate(names) if _BRACKET.sub("", heading).strip() not in are_texts]
-    below, comma = _below(lines, header, len(names), places) if header else ([], False)
-    cells = [_cells_of(name, number, lines, len(names), comma) for number in below]
-    cells = [[cell if place in places else _without_quotes(cell) for place, cell in enumerate(row)] for row in cells]
-    return Rows(header, names, below, cells, comma)
+    texts = [place for place, heading in enumerate(names) if _BRACKET.sub("", heading).strip() in are_texts]
+    numbers = [place for place in range(len(names)) if place not in texts]
+    below, comma = _below(lines, header, len(names), numbers) if header else ([], False)
+    return Rows(name, lines, header, names, below, texts, comma)
 
 
 def _joined(lines: list[str]) -> list[str]:
@@ -563,8 +576,10 @@ def _cells_of(name: str, number: int, lines: Sequence[str], columns: int, comma:
     cells = _cells(line, columns, comma)
     if cells is not None:
         return [cell if "," in cell else _without_quotes(cell) for cell in cells]
-    found = len(_divided(_without_comment(line), comma)[0])
-    advice = "; with decimal commas, separate the cells by semicolons or tabs" if found > columns and "," in line else ""
+    found = max(len(_divided(_without_comment(line), comma, marks)[0]) for marks in (";,", ";\t,", ","))
+    advice = ""
+    if found > columns:
+        advice = "; decimal commas need semicolons or tabs between cells, texts with commas or semicolons need quotation marks"
     raise input_error(
         f"{name}:{number}: must have {columns} cells, as many as the names of the columns, not the {found} of '{_shown(line)}'{advice}"
     )

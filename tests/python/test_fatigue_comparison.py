@@ -162,7 +162,12 @@ def test_bad_rows_are_named(change, words, tmp_path):
             table({}).replace("made up", "made up,1"),
             ":2: must have 26 cells, as many as the names of the columns, not the 27 of '1,made up,1,",
         ),
-        (table({}).replace("0.33,", "0,33,"), "; with decimal commas, separate the cells by semicolons or tabs"),
+        (table({}).replace("0.33,", "0,33,"), "; decimal commas need semicolons or tabs between cells, texts with"),
+        (table({}).replace("made up", "made; up").replace("0.33,", "0,33,"), "not the 27 of '1,made; up,"),
+        (
+            "&scene length_unit='mm', force_unit='N' /\n&step /\n",
+            "unknown column '&scene length_unit='mm'; choose from test, source",
+        ),
         (table({}, {"mu": "x"}).replace("made up", '"made\n\nup, #2"', 1), ":5: mu='x': must be a number"),
         (table({"mu": "0.6"}, separator=";").replace("0,6;", "0.6;"), ":2: mu='0.6': must be a number above 0"),
         (table().rstrip() + "\n" + 25 * "," + "\n", "no tests; 'mfv fatigue --new FILE.csv' writes a table"),

@@ -11,7 +11,7 @@ from ..errors import MfvError
 from ..identify.priors import NAMES, Priors
 from ..scene import Scene
 from .completion import complete_files
-from .shared import add_output
+from .shared import add_output, number
 
 NAME, HELP = "identify", "estimate parameters of a case from measured loops"
 
@@ -56,11 +56,20 @@ def _free(text: str) -> tuple[str, float]:
 
 
 def _pair(text: str) -> tuple[str, str]:
-    """The meaning of a column and what is said of it. Raises ArgumentTypeError."""
+    """The meaning of a column and what is given for it. Raises ArgumentTypeError."""
     meaning, _, value = text.partition("=")
     if not value.strip():
         raise argparse.ArgumentTypeError(f"must be COLUMN=VALUE such as shift=um, not '{text}'")
-    return meaning.strip(), value.strip()
+    return _meaning(meaning.strip()), value.strip()
+
+
+def _meaning(text: str) -> str:
+    """The meaning of a column. Raises ArgumentTypeError."""
+    from ..identify.reading import MEANINGS
+
+    if text not in MEANINGS:
+        raise argparse.ArgumentTypeError(f"'{text}' is not the meaning of a column: must be {', '.join(MEANINGS)}")
+    return text
 
 
 def _prior(text: str) -> tuple[str, float]:
@@ -91,7 +100,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--shift", action="append", default=[], metavar="TEST", help="test in which the shift is prescribed; repeat it"
     )
-    columns = "tangential_force, shift, normal_force, test"
+    columns = "tangential_force, shift, normal_force, test, time"
     parser.add_argument(
         "--column",
         type=_pair,
@@ -101,8 +110,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"name of a column in the file, or its number from 1; C: {columns}",
     )
     parser.add_argument("--unit", type=_pair, action=_Pairs, default=[], metavar="C=UNIT", help="unit of a column in the file")
-    parser.add_argument("--reverse", action="append", default=[], metavar="C", help="change the sign of a column")
-    parser.add_argument("--thickness", type=float, metavar="LENGTH", help="divides columns that are forces")
+    parser.add_argument("--reverse", type=_meaning, action="append", default=[], metavar="C", help="change the sign of a column")
+    parser.add_argument("--thickness", type=number, metavar="LENGTH", help="divides columns that are forces")
     parser.add_argument(
         "--prior",
         type=_prior,

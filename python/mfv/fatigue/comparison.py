@@ -185,7 +185,7 @@ def read_tests(path: str | os.PathLike[str]) -> list[PadTest]:
     for column in names:
         if names.count(column) > 1:
             raise input_error(f"{name}:{table.header}: column {column} is given twice")
-    tests = [_test(f"{name}:{line}", dict(zip(names, cells)), table) for line, cells in zip(table.lines, table.cells)]
+    tests = [_test(f"{name}:{line}", dict(zip(names, table.cells(line))), table) for line in table.lines]
     for place, test in enumerate(tests):
         if any(other["test"] == test["test"] for other in tests[:place]):
             raise input_error(f"{test.where}: test '{test['test']}' is there twice; give every row a name of its own")

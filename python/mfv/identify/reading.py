@@ -15,7 +15,7 @@ from ..errors import MfvError, input_error
 from .loop import Loop
 
 #: Names of the columns of a table of measured loops, in lower case, and what they stand for.
-_COLUMNS = {
+MEANINGS = {
     "tangential_force": ("tangential_force", "q"),
     "shift": ("shift", "u"),
     "normal_force": ("normal_force", "p"),
@@ -59,7 +59,7 @@ def _optional(options: Mapping[str, Any]) -> list[str]:
 def _names_of(given: Mapping[str, str | int] | None) -> dict[str, Sequence[str] | int]:
     """Names of the columns of loops in lower case by their meaning. Raises InputError."""
     _check_meanings("columns", given)
-    names: dict[str, Sequence[str] | int] = dict(_COLUMNS)
+    names: dict[str, Sequence[str] | int] = dict(MEANINGS)
     for meaning, name in (given or {}).items():
         if isinstance(name, bool) or not isinstance(name, (int, str)):
             raise input_error(f"columns: {meaning} must be the name of a column or its number from 1, not {name!r}")
@@ -70,8 +70,8 @@ def _names_of(given: Mapping[str, str | int] | None) -> dict[str, Sequence[str] 
 def _check_meanings(option: str, given: Mapping[str, Any] | None) -> None:
     """Raises InputError for an option that is not a mapping of columns by their meaning."""
     for meaning in given or {}:
-        if meaning not in _COLUMNS:
-            raise input_error(f"{option}: '{meaning}' is not one of {', '.join(_COLUMNS)}")
+        if meaning not in MEANINGS:
+            raise input_error(f"{option}: '{meaning}' is not one of {', '.join(MEANINGS)}")
 
 
 def _check_values(option: str, given: Mapping[str, Any] | None, kind: type, what: str) -> None:
@@ -114,7 +114,7 @@ def _loops(
         column = found[meaning]
         unit = _unit_of(column, meaning, units or {}, length_unit if meaning == "shift" else f"{force_unit}/{length_unit}")
         if meaning == "shift":
-            scale = tables.factor(unit, length_unit) if unit else 1.0
+            scale = tables.factor(unit, length_unit, column.label) if unit else 1.0
         else:
             scale = _force_scale(column.label, unit or (force_unit if thickness else ""), length_unit, force_unit, thickness)
         values[meaning] = (sign or {}).get(meaning, 1.0) * scale * column.numbers()
@@ -160,11 +160,11 @@ def _force_scale(label: str, unit: str, length_unit: str, force_unit: str, thick
     """Forces per thickness of the scene per unit of a column. Raises InputError."""
     if not unit:
         return 1.0
-    if tables.is_force(unit):
+    if tables.is_force(unit, label):
         if not thickness:
             raise input_error(
                 f"{label}: is a force in {unit}, where the scene has forces per thickness; give the thickness in {length_unit}, "
                 f"or the unit of the column if it is another, such as units={{'tangential_force': '{force_unit}/{length_unit}'}}"
             )
-        return tables.factor(unit, force_unit) / thickness
-    return tables.factor(unit, f"{force_unit}/{length_unit}")
+        return tables.factor(unit, force_unit, label) / thickness
+    return tables.factor(unit, f"{force_unit}/{length_unit}", label)
