@@ -207,7 +207,9 @@ def test_files_that_cannot_be_read_say_why(tmp_path: Path) -> None:
         assert name in str(raised.value)
 
 
-def test_without_the_package_the_message_has_the_line_that_installs_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_the_package_the_message_has_the_line_that_installs_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = x3p(tmp_path / "scan.x3p")
 
     def absent(module: str) -> Any:
@@ -218,6 +220,11 @@ def test_without_the_package_the_message_has_the_line_that_installs_it(tmp_path:
         ModuleNotFoundError, match=r"scan.x3p:1:\d+: not a text file.*; for files of instruments the Python package"
     ):
         profiles.read(path)
+    path = tmp_path / "scan.csv"
+    path.write_text("x,z\n0,1\n1,one\n")
+    assert main(["profile", str(path)]) == 2
+    told = capsys.readouterr().err
+    assert "scan.csv:3: must be two numbers, x and height, not '1,one'; for files of instruments the Python package" in told
 
 
 def test_a_profile_has_two_points_at_a_distance(tmp_path: Path) -> None:

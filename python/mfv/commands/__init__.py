@@ -73,8 +73,10 @@ def main(arguments: list[str] | None = None) -> int:
         _give_up_output()
         return UNUSABLE
     except ModuleNotFoundError as error:
-        package = str(error.name)
-        print(f"mfv: the Python package {package} is not installed: {how_to_install(package)}", file=sys.stderr)
+        text, package = str(error), str(error.name)
+        if "is not installed" not in text:
+            text = f"the Python package {package} is not installed: {how_to_install(package)}"
+        print(f"mfv: {text}", file=sys.stderr)
         return UNUSABLE
     except Exception:
         traceback.print_exc()
