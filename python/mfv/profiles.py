@@ -68,7 +68,8 @@ def read(
     maps: `along` x (if omitted) or y, `line` counts lines from 1 across it; 'mean': the mean of all lines; if omitted: 'middle'.
     `channel`: number from 1 or name; if omitted: the default of the format. Gaussian filters of ISO 16610-21: waves shorter than
     `lambda_s` and longer than `lambda_c` are removed (half of the amplitude at that wavelength); positions that are not at equal
-    distances are interpolated first. The filters need scipy, files of instruments SurfaceTopography. Raises OSError, InputError, ModuleNotFoundError.
+    distances are interpolated first. The filters need scipy, files of instruments SurfaceTopography. Raises
+    OSError, InputError, ModuleNotFoundError.
     """
     name = os.fspath(path)
     tables.factor(unit, "m")

@@ -44,6 +44,8 @@ _QUOTED = r"\"(?:[^\"]|\"\")*\"|'[^']*'"
 _CLOCK = re.compile(r"(?:(\S+?)(?:T|\s+))?(?:(\d+):)?(\d+):(\d+(?:[.,]\d*)?)(?:\s*([AP])M)?\s*(?:Z|[+-]\d\d:?\d\d)?", re.A | re.I)
 _DATES = ("%Y-%m-%d", "%Y/%m/%d", "%d.%m.%Y")
 _DAY = 86400.0
+#: Names of a column of heights, in lower case.
+_HEIGHTS = ("z", "h", "height", "heights", "depth", "profile")
 #: Lines among which columns and decimal marks are recognised.
 _SAMPLE = 1000
 #: Bytes by which a file is recognised as a text.
@@ -313,16 +315,17 @@ def read_trace(path: str | os.PathLike[str], heights_alone: bool = False) -> Tra
 
 
 def _named(head: Sequence[str]) -> int:
-    """The number of columns that the last line of text before the numbers names: 2 with a comma between the names, or with two units; 1
-    for one word, with or without a unit; 0 if it says neither."""
+    """The number of columns that the last line of text before the numbers names: 2 for two names with a comma between them, or with two
+    units; 1 for a height, or a unit; 0 if it says neither."""
     texts = [line.lstrip(" \t#!%/") if _is_comment(line) else line for line in head]
     above = next((text for text in reversed(texts) if _is_heading(text)), "")
     cells = _headings(above)
-    if any(_VALUE.search(cell) for cell in cells):
-        return 0
     if len(cells) == 2 and known_unit(cells[1]) and not known_unit(cells[0]):
-        return 1  # height, mm
-    return len(cells) if len(cells) == 1 or (len(cells) == 2 and ("," in above or all(map(unit_of, cells)))) else 0
+        cells = [f"{cells[0]} [{cells[1]}]"]  # height, mm
+    if len(cells) == 1:
+        return int(name_of(cells[0]) in _HEIGHTS or bool(unit_of(cells[0])))
+    is_pair = len(cells) == 2 and ("," in above or all(map(unit_of, cells)))
+    return 2 if is_pair and not any(_VALUE.search(cell) for cell in cells) else 0
 
 
 def _units_of_trace(head: Sequence[str], columns: int) -> list[str]:

@@ -169,6 +169,7 @@ def test_a_load_history_from_other_programs(tmp_path: Path) -> None:
         ("x [mm] z [mm]", [0.0, 1.0, 2.0], [5.0, 2.0, 7.0]),
         ("", None, None),
         ("Scan of pad", None, None),
+        ("# Pad3", None, None),
         ("Length,4.8 mm", None, None),
     ],
 )
