@@ -92,6 +92,8 @@ def run(
         assert case is not None
         made = Case.from_file(case)
     with made:
+        if isinstance(case, Scene) and not case.steps and case.history is None:
+            raise errors.input_error(f"{case.name}: at least one step is needed, such as steps=[Step(normal_force=500)]")
         made.run(progress=progress)
         if output is not None:
             made.write(output)

@@ -31,8 +31,8 @@ class Reading(TypedDict, total=False):
     file_unit: str | None
     outwards: bool
     spacing: float | None
-    line: int | Literal["middle", "mean"]
-    along: Literal["x", "y"]
+    line: int | Literal["middle", "mean"] | None
+    along: Literal["x", "y"] | None
     channel: int | str | None
     lambda_s: float | None
     lambda_c: float | None
@@ -54,8 +54,8 @@ def read(
     file_unit: str | None = None,
     outwards: bool = True,
     spacing: float | None = None,
-    line: int | Literal["middle", "mean"] = "middle",
-    along: Literal["x", "y"] = "x",
+    line: int | Literal["middle", "mean"] | None = None,
+    along: Literal["x", "y"] | None = None,
     channel: int | str | None = None,
     lambda_s: float | None = None,
     lambda_c: float | None = None,
@@ -65,17 +65,18 @@ def read(
     `unit`: of the positions and heights that are returned, and of `spacing`, `lambda_s` and `lambda_c`. `file_unit`: that of a file
     which names none; if omitted: `unit`, with a note. `outwards`: whether heights of the file are positive out of the material, as
     those of instruments are; they are returned as the recess, with the other sign. `spacing`: of heights without positions. Areal
-    maps: `along` x or y, `line` counts lines from 1 across it; 'mean': the mean of all lines. `channel`: number from 1 or name; if
-    omitted: the default of the format. Gaussian filters of ISO 16610-21: waves shorter than `lambda_s` and longer than `lambda_c` are
-    removed (half of the amplitude at that wavelength); positions that are not at equal distances are interpolated first. The filters
-    need scipy, files of instruments SurfaceTopography. Raises OSError, InputError, ModuleNotFoundError.
+    maps: `along` x (if omitted) or y, `line` counts lines from 1 across it; 'mean': the mean of all lines; if omitted: 'middle'.
+    `channel`: number from 1 or name; if omitted: the default of the format. Gaussian filters of ISO 16610-21: waves shorter than
+    `lambda_s` and longer than `lambda_c` are removed (half of the amplitude at that wavelength); positions that are not at equal
+    distances are interpolated first. The filters need scipy, files of instruments SurfaceTopography. Raises
+    OSError, InputError, ModuleNotFoundError.
     """
     name = os.fspath(path)
     tables.factor(unit, "m")
     notes: list[str] = []
-    if isinstance(line, bool) or not (line in ("middle", "mean") or (isinstance(line, int) and line >= 1)):
+    if isinstance(line, bool) or not (line in (None, "middle", "mean") or (isinstance(line, int) and line >= 1)):
         raise input_error(f"line: must be 'middle', 'mean' or a number from 1, not {line!r}")
-    if along not in ("x", "y"):
+    if along not in (None, "x", "y"):
         raise input_error(f"along: must be 'x' or 'y', not {along!r}")
     for key, length in (("spacing", spacing), ("lambda_s", lambda_s), ("lambda_c", lambda_c)):
         if length is not None and not (isinstance(length, Real) and 0.0 < length < np.inf):
@@ -84,10 +85,14 @@ def read(
         raise input_error(f"lambda_s={lambda_s}: must be below lambda_c={lambda_c}, or no wave is left")
     try:
         tables.check_text(path)
-        x, height, x_unit, height_unit = tables.read_trace(path)
+        x, height, x_unit, height_unit = tables.read_trace(path, heights_alone=spacing is not None)
+    except tables.Ambiguous as fault:
+        raise input_error(f"{fault}; or give spacing in {unit} for heights") from None
     except MfvError as fault:
         x, height, x_unit = _of_instrument(path, fault, line, along, channel, notes)
         height_unit = x_unit
+    else:
+        _refuse(name, "a text with one profile", line=line, along=along, channel=channel)
     x_scale, height_scale = _scales(name, unit, file_unit, x_unit, height_unit, notes)
     height = height_scale * height
     if x is None and spacing is None:
@@ -110,6 +115,13 @@ def read(
     return Profile(place, -height if outwards else height, unit, notes)
 
 
+def _refuse(name: str, what: str, **options: Any) -> None:
+    """Raises InputError for options that have no effect on a file."""
+    given = [option for option, value in options.items() if value is not None]
+    if given:
+        raise input_error(f"{name}: is {what}, for which {', '.join(given)} would have no effect: remove {', '.join(given)}")
+
+
 def _scales(name: str, unit: str, given: str | None, x_unit: str, height_unit: str, notes: list[str]) -> tuple[float, float]:
     """Factors of positions and heights. Raises InputError."""
     named = [found for found in (x_unit, height_unit) if found]
@@ -124,7 +136,12 @@ def _scales(name: str, unit: str, given: str | None, x_unit: str, height_unit: s
 
 
 def _of_instrument(
-    path: str | os.PathLike[str], fault: MfvError, line: int | str, along: str, channel: int | str | None, notes: list[str]
+    path: str | os.PathLike[str],
+    fault: MfvError,
+    line: int | str | None,
+    along: str | None,
+    channel: int | str | None,
+    notes: list[str],
 ) -> tuple[Array | None, Array, str]:
     """Positions, heights and unit of a line of a file that is not a text with columns, because of a `fault`. Raises InputError."""
     name = os.fspath(path)
@@ -155,7 +172,9 @@ def _of_instrument(
     if info.unit and not unit:
         raise input_error(f"{name}: heights in {info.unit}, which is not a length; choose another channel: {_channels(reader)}")
     if heights.ndim == 1:
+        _refuse(name, "one line, not a map", line=line, along=along)
         return None if positions is None else np.asarray(positions, dtype=float), heights, unit
+    line, along = line or "middle", along or "x"
     if along == "y":
         heights = heights.T
     size = None if positions is None else np.asarray(positions[0][:, 0] if along == "x" else positions[1][0, :], dtype=float)

@@ -10,8 +10,9 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -38,7 +39,13 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?", re.ASCII)
 _VALUE = re.compile(r"^[+-]?\.?\d|\s[+-]?[.,]?\d[\d.,]*\s*[A-Za-zµμ]+$", re.ASCII)
 _WHOLE = re.compile(r"\s*[0-9]+\s*")
 _NO_VALUES = ("", "nan", "na", "n/a", "null", "bad", "-", "--", "---", "*", "***")
-_QUOTED = r"\"[^\"]*\"|'[^']*'"
+_QUOTED = r"\"(?:[^\"]|\"\")*\"|'[^']*'"
+#: A time of the day or a duration, perhaps after a date: 12:03:04.5, 3:04.5, 2026-01-02T12:03:04Z, 02.01.2026 12:03:04, 1:03:04 PM.
+_CLOCK = re.compile(r"(?:(\S+?)(?:T|\s+))?(?:(\d+):)?(\d+):(\d+(?:[.,]\d*)?)(?:\s*([AP])M)?\s*(?:Z|[+-]\d\d:?\d\d)?", re.A | re.I)
+_DATES = ("%Y-%m-%d", "%Y/%m/%d", "%d.%m.%Y")
+_DAY = 86400.0
+#: Names of a column of heights, in lower case.
+_HEIGHTS = ("z", "h", "height", "heights", "depth", "profile")
 #: Lines among which columns and decimal marks are recognised.
 _SAMPLE = 1000
 #: Bytes by which a file is recognised as a text.
@@ -84,15 +91,15 @@ def name_of(text: str) -> str:
     return bare.strip().lower()
 
 
-def factor(unit: str, to: str) -> float:
-    """Units `to` per `unit`. Raises InputError for an unknown unit, and for units of different quantities."""
-    here, there = _size(unit), _size(to)
+def factor(unit: str, to: str, label: str = "") -> float:
+    """Units `to` per `unit`, of the column with a label. Raises InputError for an unknown unit, and for units of different quantities."""
+    here, there = _size(unit, label), _size(to)
     if here[1] != there[1]:
-        raise input_error(f"a value in {unit} is a {here[1]} and cannot be in {to}, which is for a {there[1]}")
+        raise input_error(f"{_of(label)}a value in {unit} is a {here[1]} and cannot be in {to}, which is for a {there[1]}")
     return here[0] / there[0]
 
 
-def _size(unit: str) -> tuple[float, str]:
+def _size(unit: str, label: str = "") -> tuple[float, str]:
     """A unit in SI units, and its quantity. Raises InputError."""
     known = known_unit(unit) or unit
     force, per, length = known.partition("/")
@@ -103,13 +110,18 @@ def _size(unit: str) -> tuple[float, str]:
     if per and force in FORCES and length in LENGTHS:
         return FORCES[force] / LENGTHS[length], "force per length"
     raise input_error(
-        f"unknown unit '{unit}'; known are {', '.join(LENGTHS)}; {', '.join(FORCES)}; and forces per length, such as N/mm"
+        f"{_of(label)}unknown unit '{unit}'; known are {', '.join(LENGTHS)}; {', '.join(FORCES)}; and forces per length, such as N/mm"
     )
 
 
-def is_force(unit: str) -> bool:
-    """Whether a unit is one of force, not of force per length."""
-    return _size(unit)[1] == "force"
+def _of(label: str) -> str:
+    """The beginning of a message about a column, if there is one."""
+    return f"{label}: " if label else ""
+
+
+def is_force(unit: str, label: str = "") -> bool:
+    """Whether a unit, of the column with a label, is one of force, not of force per length. Raises InputError."""
+    return _size(unit, label)[1] == "force"
 
 
 # --- lines ---
@@ -163,6 +175,11 @@ def _shown(line: str) -> str:
     return line if len(line) <= 80 else line[:77] + "..."
 
 
+def _without_comment(line: str) -> str:
+    """A line without a comment at its end; in double quotation marks # is a sign like others."""
+    return line if "#" not in line else re.match(r'(?:"[^"]*"|[^#])*', line)[0]  # type: ignore[index]  # it matches anything
+
+
 def _is_comment(line: str) -> bool:
     """Whether a line is blank, has only separators, or is a comment."""
     return not line.strip(" \t,;") or line.lstrip().startswith(("#", "!", "%", "//"))
@@ -174,29 +191,26 @@ def _is_heading(line: str) -> bool:
     return bool(re.search("[A-Za-z]", line)) and first[:1] not in tuple("0123456789+-.") and first not in ("nan", "inf", "infinity")
 
 
-def _divided(line: str, decimal_comma: bool, by_tabs: bool = False) -> tuple[list[str], int]:
-    """The cells of a line, quotation marks included, and the number of separators at its end."""
+def _divided(line: str, decimal_comma: bool, marks: str = ";,") -> tuple[list[str], int]:
+    """The cells of a line, quotation marks included, and the number of separators at its end. Between them is the first of `marks` that
+    the line has, or blanks; a comma only if it cannot be a decimal mark."""
     bare = line.rstrip(" \t,;")
     spare = len(re.findall("[,;\t]", line[len(bare) :]))
     outside = re.sub(rf"(?:^|(?<=[\s,;]))({_QUOTED})", "", bare)
-    if ";" in outside:
-        mark = ";"
-    elif by_tabs and "\t" in outside:
-        mark = "\t"
-    elif "," in outside and (not decimal_comma or _is_heading(line) or re.search("[\"']", line)):
-        mark = ","
-    else:
+    is_list = not decimal_comma or _is_heading(line) or re.search("[\"']", line)
+    mark = next((mark for mark in marks if mark in outside and (mark != "," or is_list)), "")
+    if not mark:
         return re.findall(rf"{_QUOTED}|\S+", bare), spare
     return [cell.strip() for cell in re.findall(rf"([ ]*(?:{_QUOTED})?[^{mark}]*){mark}", bare + mark)], spare
 
 
 def _headings(line: str) -> list[str]:
     """The cells of a heading without quotation marks; a unit in brackets belongs to the word before it."""
-    text = line.lstrip(" \t#!%/") if _is_comment(line) else line.partition("#")[0]
+    text = line.lstrip(" \t#!%/") if _is_comment(line) else _without_comment(line)
     if not re.search("[;,\t]", text):
         cells = re.findall(rf"(?:{_QUOTED}|[^\s\[(]\S*)(?:\s+[\[(][^\])]*[\])])?|\S+", text)
     else:
-        cells = _divided(text, True, by_tabs=True)[0]
+        cells = _divided(text, True, ";\t,")[0]
     return [cell.strip("\"' \t") for cell in cells]
 
 
@@ -217,13 +231,16 @@ def _value(cell: str, decimal_comma: bool) -> float | None:
 
 def _cells(line: str, columns: int, decimal_comma: bool) -> list[str] | None:
     """The cells of a row with that many; None for a line with fewer or more. Separators at its end stand for cells without a value."""
-    text = line.partition("#")[0]
-    cells, spare = _divided(text, decimal_comma)
-    if len(cells) != columns and "\t" in text:
-        cells, spare = _divided(text, decimal_comma, by_tabs=True)
-    if len(cells) > columns or len(cells) + spare < columns:
-        return None
-    return cells + [""] * (columns - len(cells))
+    text = _without_comment(line)
+    fit = None
+    for marks, needs in ((";,", ""), (";\t,", "\t"), (",", ";,")):  # a text between commas may have a semicolon
+        if all(mark in text for mark in needs):
+            cells, spare = _divided(text, decimal_comma, marks)
+            if len(cells) == columns:
+                return cells
+            if len(cells) < columns <= len(cells) + spare:
+                fit = cells + [""] * (columns - len(cells))
+    return fit
 
 
 def _row(line: str, columns: int, decimal_comma: bool) -> list[float] | None:
@@ -251,10 +268,16 @@ class Trace(NamedTuple):
     height_unit: str
 
 
-def read_trace(path: str | os.PathLike[str]) -> Trace:
+class Ambiguous(MfvError):
+    """A text whose rows have two readings."""
+
+
+def read_trace(path: str | os.PathLike[str], heights_alone: bool = False) -> Trace:
     """The columns x and height, or heights alone, of a text file; a first column of row numbers is dropped.
 
-    Raises OSError, InputError with line and what would be right.
+    Rows such as 0,5 are x and height, or heights with a decimal comma, by what the line above them names, x,z or z; without names they
+    are heights if these are `heights_alone` or if x would turn. Raises OSError, InputError with line and what would be right; Ambiguous
+    for such rows that may be both.
     """
     name, lines = os.fspath(path), _lines(path)
     sample = [line for line in lines[:_SAMPLE] if not _is_comment(line)]
@@ -269,8 +292,17 @@ def read_trace(path: str | os.PathLike[str]) -> Trace:
     if columns == 1 and _is_count(lines, numbers, table):
         table = table[1:]
     fault = _disorder(table[:, 0]) if columns > 1 else None
-    if fault is not None and not comma and all(_row(lines[number - 1], 1, True) for number in numbers):
-        table, fault = np.array([_row(lines[number - 1], 1, True) for number in numbers]), None
+    alone = [_row(lines[number - 1], 1, True) for number in numbers] if columns == 2 and not comma else []
+    if alone and None not in alone:
+        named = _named(lines[: start - 1])
+        if named == 1 or (not named and (heights_alone or fault is not None)):
+            table, fault = np.array(alone), None
+        elif not named:
+            raise Ambiguous(
+                None,
+                f"{name}:{numbers[0]}: '{_shown(lines[numbers[0] - 1])}' may be x and height, or one height with a decimal comma; "
+                "name the columns in the line above, x,z or z, or separate x and height by a semicolon",
+            )
     if fault is not None:
         raise input_error(f"{name}:{numbers[fault]}: x must increase from line to line, or decrease")
     units = _units_of_trace(lines[: start - 1], columns)
@@ -280,6 +312,20 @@ def read_trace(path: str | os.PathLike[str]) -> Trace:
     if x.size > 1 and x[0] > x[-1]:
         table = table[::-1]
     return Trace(table[:, 0].copy(), table[:, 1].copy(), units[0], units[1])
+
+
+def _named(head: Sequence[str]) -> int:
+    """The number of columns that the last line of text before the numbers names: 2 for two names with a comma between them, or with two
+    units; 1 for a height, or a unit; 0 if it says neither."""
+    texts = [line.lstrip(" \t#!%/") if _is_comment(line) else line for line in head]
+    above = next((text for text in reversed(texts) if _is_heading(text)), "")
+    cells = _headings(above)
+    if len(cells) == 2 and known_unit(cells[1]) and not known_unit(cells[0]):
+        cells = [f"{cells[0]} [{cells[1]}]"]  # height, mm
+    if len(cells) == 1:
+        return int(name_of(cells[0]) in _HEIGHTS or bool(unit_of(cells[0])))
+    is_pair = len(cells) == 2 and ("," in above or all(map(unit_of, cells)))
+    return 2 if is_pair and not any(_VALUE.search(cell) for cell in cells) else 0
 
 
 def _units_of_trace(head: Sequence[str], columns: int) -> list[str]:
@@ -360,13 +406,19 @@ def _disorder(x: Array) -> int | None:
 
 @dataclass
 class Column:
-    """A measured column: what it is called in messages, its unit as it is written or '', and its values (numbers, or texts of a
+    """A measured column: its table or file, its name there, its unit as it is written or '', and its values (numbers, or texts of a
     file)."""
 
-    label: str
+    table: str
+    name: str
     unit: str
     values: Any
     decimal_comma: bool = False
+
+    @property
+    def label(self) -> str:
+        """What it is called in messages."""
+        return f"{self.table}: column {self.name}"
 
     def numbers(self) -> Array:
         """The values as numbers; NaN for cells without one. Raises InputError."""
@@ -378,6 +430,70 @@ class Column:
             except (TypeError, ValueError):
                 raise input_error(f"{self.label}: {value!r} is not a number") from None
         return np.array(found)
+
+    def seconds(self) -> Array | None:
+        """Times of the day, durations or dates with times as seconds from the first; None if a value is something else.
+
+        A time of the day that is earlier than the one before by more than half a day is one of the next day.
+        """
+        values = np.atleast_1d(np.asarray(self.values))
+        if values.dtype.kind in "mM":
+            return np.asarray((values - values[0]) / np.timedelta64(1, "s"))
+        found = [_CLOCK.fullmatch(str(value).strip("\"' ")) for value in values.tolist()]
+        if None in found:
+            return None
+        dates, seconds = [match[1] or "" for match in found], np.array([_seconds(match) for match in found])  # type: ignore[index,arg-type]
+        if len(set(dates)) > 1:
+            days = {date: _day(date) for date in set(dates)}
+            if None in days.values():
+                return None
+            seconds = seconds + _DAY * np.array([days[date] for date in dates], dtype=float)
+        elif not dates[0]:
+            seconds[1:] += _DAY * np.cumsum(np.diff(seconds) < -0.5 * _DAY)
+        return np.asarray(seconds - seconds[0])
+
+
+def _seconds(clock: re.Match[str]) -> float:
+    """The seconds of a time of the day; minutes and seconds, or hours and minutes, if it has two numbers."""
+    _, hours, minutes, seconds, half = clock.groups()
+    if half:
+        hours, minutes, seconds = (hours, minutes, seconds) if hours else (minutes, seconds, "0")
+        hours = int(hours) % 12 + (12 if half in "pP" else 0)
+    return 3600.0 * int(hours or 0) + 60.0 * int(minutes) + float(seconds.replace(",", "."))
+
+
+def _day(date: str) -> int | None:
+    """The number of a day; None for a date whose order is not known, such as 1/2/2026."""
+    for form in _DATES:
+        try:
+            return datetime.strptime(date, form).toordinal()
+        except ValueError:
+            continue
+    return None
+
+
+@dataclass
+class Rows:
+    """A table in a text file: line and names of its heading, lines of its rows, places from 0 of the columns of texts, and whether
+    commas are decimal marks."""
+
+    file: str
+    text: list[str]
+    header: int
+    names: list[str]
+    lines: list[int]
+    texts: list[int]
+    decimal_comma: bool
+
+    def cells(self, line: int) -> list[str]:
+        """The cells of a row. Raises InputError for another number of them than of names."""
+        cells = _cells_of(self.file, line, self.text, len(self.names), self.decimal_comma)
+        return [_without_quotes(cell) if place in self.texts else cell for place, cell in enumerate(cells)]
+
+    def number(self, cell: str) -> float:
+        """The number in a cell; NaN for anything else."""
+        value = _value(cell, self.decimal_comma)
+        return math.nan if value is None else value
 
 
 #: Names of a column, or its number from 1.
@@ -393,35 +509,21 @@ def read_columns(path: str | os.PathLike[str], wanted: Names, optional: Sequence
     name, lines = os.fspath(path), _lines(path)
     header, names = _header(name, lines, wanted, optional)
     places = _chosen(name, names, wanted, optional)
-    count = len(names)
-    below = [number for number in range(header + 1, len(lines) + 1) if not _is_comment(lines[number - 1])]
     needed = [place for meaning, place in places.items() if meaning not in optional]
-
-    def is_row(number: int, comma: bool) -> bool:
-        cells = _cells(lines[number - 1], count, comma)
-        return cells is not None and all(_value(cells[place], comma) is not None for place in needed)
-
-    comma = sum(is_row(number, True) for number in below[:_SAMPLE]) > sum(is_row(number, False) for number in below[:_SAMPLE])
+    below, comma = _below(lines, header, len(names), needed)
     units = [written_unit(heading) for heading in names]
-    if below and header and not is_row(below[0], comma):  # a line of units
+    if below and header and _numbers_in(lines[below[0] - 1], len(names), needed, comma) < len(needed):  # a line of units
         written = _headings(lines[below[0] - 1])
-        cells_of_units = [written[place] for place in needed] if len(written) == count else ["?"]
+        cells_of_units = [written[place] for place in needed] if len(written) == len(names) else ["?"]
         if all(not cell or unit_of(cell) or cell[0] in "[(-" for cell in cells_of_units):
             units = [written_unit(cell) or unit for cell, unit in zip(written, units)]
             del below[0]
     if not header:  # columns by number
-        while below and not is_row(below[0], comma):
+        while below and _numbers_in(lines[below[0] - 1], len(names), needed, comma) < len(needed):
             del below[0]
     if not below:
         raise input_error(f"{name}: no rows; needs a line with the names of the columns, such as Q,U,P, and rows of numbers")
-    rows = []
-    for number in below:
-        cells = _cells(lines[number - 1], count, comma)
-        if cells is None:
-            raise input_error(
-                f"{name}:{number}: must have {count} cells, as many as the names of the columns, not '{_shown(lines[number - 1])}'"
-            )
-        rows.append([cell.strip("\"'") if len(cell) > 1 and cell[0] == cell[-1] and "," not in cell else cell for cell in cells])
+    rows = [_cells_of(name, number, lines, len(names), comma) for number in below]
     for row, number in zip(rows, below):
         for meaning in places.keys() - optional:
             cell = row[places[meaning]]
@@ -429,9 +531,67 @@ def read_columns(path: str | os.PathLike[str], wanted: Names, optional: Sequence
                 column = lines[number - 1].find(cell) + 1
                 raise input_error(f"{name}:{number}:{column}: column {names[places[meaning]]}: '{_shown(cell)}' is not a number")
     return {
-        meaning: Column(f"{name}: column {names[place] or place + 1}", units[place], [row[place] for row in rows], comma)
+        meaning: Column(name, names[place] or str(place + 1), units[place], [row[place] for row in rows], comma)
         for meaning, place in places.items()
     }
+
+
+def read_rows(path: str | os.PathLike[str], are_texts: Container[str]) -> Rows:
+    """The rows of a text file under a line with the names of the columns. `are_texts`: names, without a unit in brackets, of columns that
+    are not numbers; those in double quotation marks may extend over lines. Raises OSError, InputError."""
+    name, lines = os.fspath(path), _joined(_lines(path))
+    header = next((number for number, line in enumerate(lines, start=1) if not _is_comment(line)), 0)
+    names = _headings(lines[header - 1]) if header else []
+    texts = [place for place, heading in enumerate(names) if _BRACKET.sub("", heading).strip() in are_texts]
+    numbers = [place for place in range(len(names)) if place not in texts]
+    below, comma = _below(lines, header, len(names), numbers) if header else ([], False)
+    return Rows(name, lines, header, names, below, texts, comma)
+
+
+def _joined(lines: list[str]) -> list[str]:
+    """Lines, with a cell in double quotation marks that extends over several in the first of them; the others are empty."""
+    ends = [place for place, line in enumerate(lines) if line.count('"') % 2 and not _is_comment(line)]
+    for first, last in zip(ends[::2], ends[1::2]):
+        lines[first : last + 1] = [" ".join(lines[first : last + 1]), *[""] * (last - first)]
+    return lines
+
+
+def _below(lines: Sequence[str], header: int, columns: int, places: Sequence[int]) -> tuple[list[int], bool]:
+    """The numbers of the lines below a header that are not comments, and whether more of their cells are numbers with decimal commas than
+    with points. `places`: of the cells that must be numbers, from 0."""
+    below = [number for number in range(header + 1, len(lines) + 1) if not _is_comment(lines[number - 1])]
+    point, comma = (
+        sum(_numbers_in(lines[number - 1], columns, places, mark) for number in below[:_SAMPLE]) for mark in (False, True)
+    )
+    return below, comma > point
+
+
+def _numbers_in(line: str, columns: int, places: Sequence[int], comma: bool) -> int:
+    """How many of the cells at certain places from 0 are numbers or without a value; 0 for a line that is not a row."""
+    cells = _cells(line, columns, comma)
+    return 0 if cells is None else sum(_value(cells[place], comma) is not None for place in places)
+
+
+def _cells_of(name: str, number: int, lines: Sequence[str], columns: int, comma: bool) -> list[str]:
+    """The cells of a row without quotation marks, except for numbers with decimal commas in them. Raises InputError for another number
+    of them."""
+    line = lines[number - 1]
+    cells = _cells(line, columns, comma)
+    if cells is not None:
+        return [cell if "," in cell else _without_quotes(cell) for cell in cells]
+    found = max(len(_divided(_without_comment(line), comma, marks)[0]) for marks in (";,", ";\t,", ","))
+    advice = ""
+    if found > columns:
+        advice = "; decimal commas need semicolons or tabs between cells, texts with commas or semicolons need quotation marks"
+    raise input_error(
+        f"{name}:{number}: must have {columns} cells, as many as the names of the columns, not the {found} of '{_shown(line)}'{advice}"
+    )
+
+
+def _without_quotes(cell: str) -> str:
+    """A cell without quotation marks around it."""
+    is_quoted = len(cell) > 1 and cell[0] == cell[-1] and cell[0] in "\"'"
+    return cell[1:-1].replace('""', '"').strip() if is_quoted else cell
 
 
 def _places(names: Sequence[str], keys: Sequence[str] | int) -> list[int]:
@@ -501,6 +661,5 @@ def columns_of(table: Any, label: str, wanted: Names, optional: Sequence[str] = 
         raise missing_columns(label, needed, names)
     places = _chosen(label, names, wanted, optional)
     return {
-        meaning: Column(f"{label}: column {names[place]}", written_unit(names[place]), table[keys[place]])
-        for meaning, place in places.items()
+        meaning: Column(label, names[place], written_unit(names[place]), table[keys[place]]) for meaning, place in places.items()
     }

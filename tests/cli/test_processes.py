@@ -4,8 +4,10 @@ import itertools
 import os
 import random
 import resource
+import shutil
 import signal
 import subprocess
+import time
 from pathlib import Path
 
 import h5py
@@ -132,3 +134,27 @@ def test_a_title_may_be_empty(tmp_path):
     assert subprocess.run([PROGRAM, "case.nml"], cwd=tmp_path, capture_output=True).returncode == 0
     with h5py.File(tmp_path / "case.h5") as result:
         assert result.attrs["outcome"] == "complete"
+
+
+def test_continuous_integration_leaves_nothing_behind_where_a_step_fails(tmp_path):
+    """.ci/run with stand-ins: the site takes a minute, the first hour fails."""
+    for name, text in (
+        ("scripts/demo.sh", ""),
+        ("scripts/docs.sh", "echo $$ >site; sleep 60"),
+        ("build/venv/bin/pip", ""),
+        ("build/venv/bin/python", "while [ ! -s site ]; do sleep 0.01; done; exit 3"),
+    ):
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(f"#!/bin/sh\n{text}\n")
+        path.chmod(0o755)
+    (tmp_path / ".ci").mkdir()
+    shutil.copy(ROOT / ".ci/run", tmp_path / ".ci/run")
+    assert subprocess.run([tmp_path / ".ci/run"], capture_output=True, timeout=30).returncode == 3
+    site = (tmp_path / "site").read_text().strip()
+    for _ in range(100):
+        if subprocess.run(["ps", "-o", "stat=", "-p", site], capture_output=True, text=True).stdout.strip() in ("", "Z"):
+            return
+        time.sleep(0.1)
+    os.kill(int(site), signal.SIGKILL)
+    pytest.fail("the site is still being built")

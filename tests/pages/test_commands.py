@@ -631,3 +631,18 @@ def test_completion_needs_no_argcomplete(monkeypatch: pytest.MonkeyPatch, capsys
     monkeypatch.setitem(sys.modules, "argcomplete.completers", None)
     assert main(["new", "--list"]) == 0
     assert "two_cylinders" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["new", "x", "--template", "y"], "mfv new: error: unknown option '--template'; choose from --output, --list, --force"),
+        (["plot", "--cycels=2", "x.h5"], "mfv plot: error: unknown option '--cycels'; did you mean --cycles?"),
+        (["info", "x.h5", "y.h5"], "mfv info: error: too many arguments: 'y.h5'"),
+    ],
+)
+def test_an_unknown_word_is_answered_by_its_command(words: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(words)
+    told = capsys.readouterr().err
+    assert ended.value.code == 2 and told.startswith(f"usage: mfv {words[0]} ") and message in told

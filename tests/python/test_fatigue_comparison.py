@@ -158,9 +158,18 @@ def test_bad_rows_are_named(change, words, tmp_path):
         (table({}).replace("pad_radius [mm]", "pad_radius [m]"), "column pad_radius is in m; it must be in mm"),
         (table({}).replace("pad_radius [mm]", "pad_radus"), "unknown column 'pad_radus'; did you mean pad_radius?"),
         (table({}).replace("torsion_ratio", "mu"), "column mu is given twice"),
-        (table({}).replace("made up", "made up,1"), "27 values under 26 columns; write decimals with a point"),
-        (table({}, {"mu": "x"}).replace("made up", '"made\n\nup"', 1), ":5: mu='x': must be a number"),
-        (table({"source": "x" * 200000}), ":2: not a row of a table: field larger than field limit"),
+        (
+            table({}).replace("made up", "made up,1"),
+            ":2: must have 26 cells, as many as the names of the columns, not the 27 of '1,made up,1,",
+        ),
+        (table({}).replace("0.33,", "0,33,"), "; decimal commas need semicolons or tabs between cells, texts with"),
+        (table({}).replace("made up", "made; up").replace("0.33,", "0,33,"), "not the 27 of '1,made; up,"),
+        (
+            "&scene length_unit='mm', force_unit='N' /\n&step /\n",
+            "unknown column '&scene length_unit='mm'; choose from test, source",
+        ),
+        (table({}, {"mu": "x"}).replace("made up", '"made\n\nup, #2"', 1), ":5: mu='x': must be a number"),
+        (table({"mu": "0.6"}, separator=";").replace("0,6;", "0.6;"), ":2: mu='0.6': must be a number above 0"),
         (table().rstrip() + "\n" + 25 * "," + "\n", "no tests; 'mfv fatigue --new FILE.csv' writes a table"),
         (table({}, {"test": 1}), ":3: test '1' is there twice"),
         ("", "no tests; 'mfv fatigue --new FILE.csv' writes a table"),
@@ -172,8 +181,8 @@ def test_bad_tables_are_named(text, words, tmp_path):
     with pytest.raises(mfv.errors.InputError) as caught:
         comparison.read_tests(tmp_path / "tests.csv")
     assert words in str(caught.value)
-    (tmp_path / "tests.csv").write_bytes(table({}).encode("utf-16"))
-    with pytest.raises(mfv.errors.InputError, match="not a text file in UTF-8"):
+    (tmp_path / "tests.csv").write_bytes(table({}).encode() + b"\0")
+    with pytest.raises(mfv.errors.InputError, match="tests.csv:3:1: not a text file: control character 0"):
         comparison.read_tests(tmp_path / "tests.csv")
 
 
@@ -211,3 +220,9 @@ def test_semicolons_decimal_commas_comments_and_a_mark(tmp_path):
     # As spreadsheets write it: tabs, and a row of empty cells.
     (tmp_path / "c.txt").write_text(table(rows, separator="\t") + 25 * "\t" + "\n", encoding="utf-8")
     assert comparison.read_tests(tmp_path / "c.txt")[0].values == expected[0].values
+    # All cells in quotation marks, with decimal commas and a comma in a text; UTF-16.
+    lines = table(rows, separator=";").replace("made up", 'made, ""as said"", #2 up').splitlines()
+    quoted = "".join(",".join(f'"{cell}"' for cell in line.split(";")) + "\r\n" for line in lines)
+    (tmp_path / "d.csv").write_text(quoted, encoding="utf-16")
+    found = comparison.read_tests(tmp_path / "d.csv")
+    assert found[0].values == expected[0].values | {"source": 'made, "as said", #2 up'}

@@ -259,7 +259,11 @@ def test_tables_and_files(tmp_path: Path) -> None:
         (b"Q,U,P\n1,1,100\n,2,100\n3,3,100\n4,4,100\n5,5,100\n", " the columns must be finite numbers; remove the rows with gaps"),
         (b"Q,U,P\n1,1,100\n2,far,100\n", "3:3: column U: 'far' is not a number"),
         (b"Q,U,P,test\n1,1,100,a\n2,2,100,\n", " column test has empty cells"),
-        (b"Q,U,P\n1,1\n", "2: must have 3 cells, as many as the names of the columns, not '1,1'"),
+        (b"Q,U,P\n1,1\n", "2: must have 3 cells, as many as the names of the columns, not the 2 of '1,1'"),
+        (
+            b"Q,U,P\n1,5,2,5,100\n",
+            "2: must have 3 cells, as many as the names of the columns, not the 5 of '1,5,2,5,100'; decimal commas need",
+        ),
         (b"Q,U,P\n", " no rows; needs a line with the names of the columns"),
         (b"", " no rows; needs a line with the names of the columns"),
         (b"Q,U,P\n1,1,\xb5\n", "2:5: column P: '\xb5' is not a number"),
@@ -308,11 +312,38 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     for arguments, complaint in (
         ([str(case), str(loops), *start[:2], "--shift", "big"], "no test 'big'; there are small, large"),
         ([str(case), str(loops), *start[:2], "--column", "shift=dU"], "no column du; there are test, U, Q, P"),
-        ([str(case), str(loops), *start[:2], "--unit", "shift=N"], "a value in N is a force and cannot be in mm"),
+        (
+            [str(case), str(loops), *start[:2], "--unit", "shift=N"],
+            f"{loops}: column U: a value in N is a force and cannot be in mm",
+        ),
+        (
+            [str(case), str(loops), "--free", "mu=0.5"],
+            "'mu': no such parameter; free are keys of bodies, friction and mesh, and rig_stiffness; did you mean friction%mu?",
+        ),
+        ([str(case), str(loops), "--free", "radius=9"], "did you mean body(1)%radius or body(2)%radius?"),
+        ([str(case), str(loops), "--free", "friction%mus=9"], "Friction has no 'mus'"),
+        ([str(case), str(loops), "--free", "rig_stifness=9"], "did you mean rig_stiffness?"),
         ([str(case), str(case), *start[:2]], f"{case}: no column Q, U, P; there are &scene"),
     ):
         assert main(["identify", *arguments]) == 2
         assert complaint in capsys.readouterr().err
+    for arguments, complaint in (
+        (["--unit", "U=um"], "argument --unit: 'U' is not the meaning of a column: must be tangential_force, shift,"),
+        (["--reverse", "U"], "argument --reverse: 'U' is not the meaning of a column"),
+        (["--thickness", "0,8"], "must be a number with a decimal point, such as 0.8, not '0,8'"),
+    ):
+        with pytest.raises(SystemExit):
+            main(["identify", str(case), str(loops), *start[:2], *arguments])
+        assert complaint in capsys.readouterr().err
+    for option, first, second in (
+        ("--free", "friction%mu=0.5", "friction%mu = 0.6"),
+        ("--column", "shift=U", "shift=V"),
+        ("--unit", "shift=um", "shift=mm"),
+        ("--prior", "lag=1", "lag=2"),
+    ):
+        with pytest.raises(SystemExit):
+            main(["identify", str(case), str(loops), "--free", "rig_stiffness=8e4", option, first, option, second])
+        assert f"argument {option}: {first.partition('=')[0]} is given twice" in capsys.readouterr().err
     for prior in ("lag=x", "phase=1", "drift=-1"):
         with pytest.raises(SystemExit):
             main(["identify", str(case), str(loops), *start, "--prior", prior])

@@ -148,6 +148,20 @@ def test_units_of_texts(tmp_path: Path) -> None:
             profiles.read(path, lambda_s=0.8)
 
 
+def test_options_of_maps_are_refused_where_they_have_no_effect(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "trace.csv"
+    path.write_text("x [mm] z [mm]\n0 1\n1 2\n2 4\n")
+    for options, words in (
+        ({"line": 1}, "line would have no effect: remove line"),
+        ({"line": "middle", "along": "x"}, "line, along would have no effect: remove line, along"),
+        ({"channel": 1}, "channel would have no effect"),
+    ):
+        with pytest.raises(errors.InputError, match=f"trace.csv: is a text with one profile, for which {words}"):
+            profiles.read(path, **options)
+    assert main(["profile", str(path), "--channel", "Height"]) == 2
+    assert "trace.csv: is a text with one profile, for which channel would have no effect" in capsys.readouterr().err
+
+
 def test_points_without_a_position_are_omitted(tmp_path: Path) -> None:
     path = tmp_path / "trace.txt"
     path.write_text("x [mm] z [mm]\n0 1\nnan nan\n1 2\n2 nan\n3 1\n")
@@ -193,7 +207,9 @@ def test_files_that_cannot_be_read_say_why(tmp_path: Path) -> None:
         assert name in str(raised.value)
 
 
-def test_without_the_package_the_message_has_the_line_that_installs_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_the_package_the_message_has_the_line_that_installs_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = x3p(tmp_path / "scan.x3p")
 
     def absent(module: str) -> Any:
@@ -204,6 +220,11 @@ def test_without_the_package_the_message_has_the_line_that_installs_it(tmp_path:
         ModuleNotFoundError, match=r"scan.x3p:1:\d+: not a text file.*; for files of instruments the Python package"
     ):
         profiles.read(path)
+    path = tmp_path / "scan.csv"
+    path.write_text("x,z\n0,1\n1,one\n")
+    assert main(["profile", str(path)]) == 2
+    told = capsys.readouterr().err
+    assert "scan.csv:3: must be two numbers, x and height, not '1,one'; for files of instruments the Python package" in told
 
 
 def test_a_profile_has_two_points_at_a_distance(tmp_path: Path) -> None:

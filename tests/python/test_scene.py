@@ -153,6 +153,10 @@ def test_the_library_judges() -> None:
         cylinder(mfv.Step(shift=float("inf"))).text()
     with pytest.raises(errors.InputError, match="hand.nml: &body"):
         mfv.Scene(DISK, DISK, name="hand.nml").run()
+    empty = cylinder(PRESS)
+    empty.steps = []
+    with pytest.raises(errors.InputError, match="scene: at least one step is needed"):
+        empty.run()
 
 
 @pytest.mark.parametrize(

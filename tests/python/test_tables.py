@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import mfv
-from mfv import Body, Mesh, Scene, Step, errors, identify, tables
+from mfv import Body, Mesh, Scene, Step, errors, identify, profiles, tables
 
 X = [-0.2, -0.1, -0.05, 0.0, 0.05, 0.1, 0.25]
 HEIGHT = [0.04, 0.01, 0.0025, 0.0, 0.0025, 0.01, 0.0625]
@@ -155,6 +155,49 @@ def test_a_load_history_from_other_programs(tmp_path: Path) -> None:
         path.write_text(content)
         with pytest.raises(errors.InputError, match=message):
             case.contact()
+
+
+@pytest.mark.parametrize(
+    "heading, x, height",
+    [
+        ("z [mm]", None, [0.5, 1.2, 2.7]),
+        ("# Height", None, [0.5, 1.2, 2.7]),
+        ("height, mm", None, [0.5, 1.2, 2.7]),
+        ("Scan of pad 3\nz\nmm", None, [0.5, 1.2, 2.7]),
+        ("x,z", [0.0, 1.0, 2.0], [5.0, 2.0, 7.0]),
+        ("Gain,3\nx,z\nmm,um", [0.0, 1.0, 2.0], [5.0, 2.0, 7.0]),
+        ("x [mm] z [mm]", [0.0, 1.0, 2.0], [5.0, 2.0, 7.0]),
+        ("", None, None),
+        ("Scan of pad", None, None),
+        ("# Pad3", None, None),
+        ("Length,4.8 mm", None, None),
+    ],
+)
+def test_whole_numbers_and_commas_are_read_by_the_names_above(tmp_path: Path, heading: str, x: Any, height: Any) -> None:
+    path = tmp_path / "trace.txt"
+    path.write_text(f"{heading}\n0,5\n1,2\n2,7\n")
+    if height is None:
+        with pytest.raises(
+            errors.InputError, match="0,5' may be x and height, or one height with a decimal comma; name the columns"
+        ) as told:
+            profiles.read(path)
+        assert "give spacing in mm" in str(told.value)
+        height = [0.5, 1.2, 2.7]
+    else:
+        trace = tables.read_trace(path)
+        assert (None if trace.x is None else trace.x.tolist(), trace.height.tolist()) == (x, height)
+    if x is None:
+        assert (
+            profiles.read(path, spacing=0.5, outwards=False, file_unit="mm" if "mm" not in heading else None).height.tolist()
+            == height
+        )
+
+
+def test_two_names_above_refuse_x_that_turns(tmp_path: Path) -> None:
+    path = tmp_path / "trace.txt"
+    path.write_text("x,z\n3,5\n1,2\n2,2\n")
+    with pytest.raises(errors.InputError, match="trace.txt:4: x must increase from line to line, or decrease"):
+        tables.read_trace(path)
 
 
 ROWS = [(0.0, 0.0, 100.0), (1.0, 0.5, 100.0), (2.0, 1.0, 100.0), (1.0, 0.75, 100.0), (0.0, 0.25, 100.0)]
@@ -308,6 +351,66 @@ def test_an_unknown_unit_is_replaced_and_a_temperature_is_no_time(tmp_path: Path
         (loop,) = identify.read(path, units={"tangential_force": "N/mm"})
         assert loop.tangential_force.tolist() == [row[0] for row in ROWS]
         assert (loop.time is not None) == is_time
+
+
+@pytest.mark.parametrize(
+    "heading, cells, times, note",
+    [
+        ("Time", ["12:03:04.5", "12:03:05", "12:03:05.25", "12:03:06", "12:03:10"], [0.0, 0.5, 0.75, 1.5, 5.5], ""),
+        ("Time (hh:mm:ss)", ["23:59:59", "00:00:01", "00:00:02", "00:00:03", "00:00:04"], [0.0, 2.0, 3.0, 4.0, 5.0], ""),
+        ("t", ["59:58.5", "59:59", "1:00:00", "1:00:01", "1:00:02"], [0.0, 0.5, 1.5, 2.5, 3.5], ""),
+        ("time", [f"2026-01-0{1 + day}T23:00:00Z" for day in range(5)], [86400.0 * day for day in range(5)], ""),
+        (
+            "time",
+            [f"{28 + day}.02.2026 1:00:00" if day == 0 else f"0{day}.03.2026 1:00:00" for day in range(5)],
+            [86400.0 * n for n in range(5)],
+            "",
+        ),
+        (
+            "time",
+            [f"1/2/2026 {hour % 12 or 12}:00:00 {'AP'[hour > 11]}M" for hour in range(10, 15)],
+            [3600.0 * n for n in range(5)],
+            "",
+        ),
+        ("time [min]", ["1", "2", "3", "4", "5"], [1.0, 2.0, 3.0, 4.0, 5.0], ""),
+        (
+            "time",
+            [f"{day}/2/2026 1:00:00" for day in range(1, 6)],
+            None,
+            "'1/2/2026 1:00:00' is not a number or a time of the day such as 12:03:04.5",
+        ),
+        ("time", ["1", "2", "2", "3", "4"], None, "it does not increase from row 2 to the next"),
+        ("time", ["12:00:00", "12:00:01", "late", "12:00:03", "12:00:04"], None, "'12:00:00' is not a number or"),
+        ("time [furlong]", ["1", "2", "3", "4", "5"], None, "furlong is not a unit of time"),
+        ("T [C]", ["20", "21", "22", "23", "24"], None, ""),
+    ],
+)
+def test_times_of_the_day_are_seconds_or_are_said_to_be_unused(
+    tmp_path: Path, heading: str, cells: list[str], times: list[float] | None, note: str
+) -> None:
+    path = tmp_path / "loops.csv"
+    path.write_text("\n".join([f"{heading};Q;U;P", *(";".join([cell, *map(str, row)]) for cell, row in zip(cells, ROWS))]) + "\n")
+    table = {heading: cells, **dict(zip("QUP", np.array(ROWS).T))}
+    for (loop,) in (identify.read(path), identify.loops_of(table)):
+        assert (None if loop.time is None else loop.time.tolist()) == times
+        assert len(loop.notes) == bool(note) and all(note in told and f"column {heading}" in told for told in loop.notes)
+
+
+def test_dates_of_a_data_frame_are_seconds() -> None:
+    import pandas
+
+    table = pandas.DataFrame(np.array(ROWS), columns=["Q", "U", "P"])
+    for zone in (None, "UTC"):
+        table["time"] = pandas.date_range("2026-01-02 12:00", periods=5, freq="250ms", tz=zone)
+        (loop,) = identify.loops_of(table)
+        assert loop.time is not None and loop.time.tolist() == [0.0, 0.25, 0.5, 0.75, 1.0]
+
+
+def test_a_time_that_is_not_used_is_a_warning_of_the_fit() -> None:
+    case, loop = synthetic()
+    table = {"Q": loop.tangential_force, "U": loop.shift, "P": np.full(loop.shift.size, 100.0), "time": np.zeros(loop.shift.size)}
+    fitted = identify.fit(case, identify.loops_of(table, shift_noise=1.0e-4), {"friction%mu": 0.5, "rig_stiffness": 8.0e4})
+    assert any("column time is not used: it does not increase from row 1 to the next" in warning for warning in fitted.warnings)
 
 
 def test_faults_of_tables_in_memory() -> None:

@@ -58,7 +58,9 @@ def main(arguments: list[str] | None = None) -> int:
         parser.error(f"unknown command '{words[0]}'{advice}")
     if words[0] in PROGRAMS:
         return _as_program(PROGRAMS[words[0]], words[1:])
-    options = parser.parse_args(arguments)
+    options, unknown = parser.parse_known_args(arguments)
+    if unknown:
+        _refuse(options.parser, unknown[0])
     try:
         code: int = options.command(options) or 0
         _finish_output()
@@ -71,8 +73,10 @@ def main(arguments: list[str] | None = None) -> int:
         _give_up_output()
         return UNUSABLE
     except ModuleNotFoundError as error:
-        package = str(error.name)
-        print(f"mfv: the Python package {package} is not installed: {how_to_install(package)}", file=sys.stderr)
+        text, package = str(error), str(error.name)
+        if "is not installed" not in text:
+            text = f"the Python package {package} is not installed: {how_to_install(package)}"
+        print(f"mfv: {text}", file=sys.stderr)
         return UNUSABLE
     except Exception:
         traceback.print_exc()
@@ -80,6 +84,15 @@ def main(arguments: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("mfv: interrupted", file=sys.stderr)
         return INTERRUPTED
+
+
+def _refuse(parser: argparse.ArgumentParser, word: str) -> None:
+    """End a command because of a word that it does not know."""
+    if not word.startswith("-"):
+        parser.error(f"too many arguments: '{word}'")
+    name = word.partition("=")[0]
+    options = [text for action in parser._actions for text in action.option_strings if text.startswith("--") and text != "--help"]
+    parser.error(f"unknown option '{name}'{suggestion(name, options)}")
 
 
 def _as_program(program: str, arguments: list[str]) -> int:
@@ -121,7 +134,7 @@ def _parser() -> argparse.ArgumentParser:
         )
         module.add_arguments(command)
         if module.NAME not in PROGRAMS:
-            command.set_defaults(command=module.run)
+            command.set_defaults(command=module.run, parser=command)
     return parser
 
 

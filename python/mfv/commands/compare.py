@@ -6,7 +6,7 @@ import argparse
 
 from .._files import PICTURES, target, written
 from ..result import read
-from .shared import add_output, add_result
+from .shared import add_output, add_result, number
 
 NAME, HELP = "compare", "compare two results: differences and a picture"
 
@@ -36,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--no-picture", action="store_true", help="print only")
     parser.add_argument("--step", type=int, metavar="N", help="compare state N (group steps/000N); the last states by default")
     parser.add_argument(
-        "--tolerance", type=float, metavar="RATIO", help="exit with code 1 if the largest difference of the tractions exceeds this"
+        "--tolerance", type=number, metavar="RATIO", help="exit with code 1 if the largest difference of the tractions exceeds this"
     )
 
 

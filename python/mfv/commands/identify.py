@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 from .._files import PICTURES, target, written
 from ..errors import MfvError
 from ..identify.priors import NAMES, Priors
 from ..scene import Scene
 from .completion import complete_files
-from .shared import add_output
+from .shared import add_output, number
 
 NAME, HELP = "identify", "estimate parameters of a case from measured loops"
 
@@ -33,6 +34,18 @@ examples:
 """
 
 
+class _Pairs(argparse.Action):
+    """Collects pairs of a name and a value; a name given twice is an error."""
+
+    def __call__(
+        self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, pair: Any, option: str | None = None
+    ) -> None:
+        pairs = getattr(namespace, self.dest)
+        if pair[0] in dict(pairs):
+            raise argparse.ArgumentError(self, f"{pair[0]} is given twice")
+        setattr(namespace, self.dest, [*pairs, pair])
+
+
 def _free(text: str) -> tuple[str, float]:
     """A parameter and its start value. Raises ArgumentTypeError."""
     name, _, value = text.partition("=")
@@ -43,11 +56,20 @@ def _free(text: str) -> tuple[str, float]:
 
 
 def _pair(text: str) -> tuple[str, str]:
-    """The meaning of a column and what is said of it. Raises ArgumentTypeError."""
+    """The meaning of a column and what is given for it. Raises ArgumentTypeError."""
     meaning, _, value = text.partition("=")
     if not value.strip():
         raise argparse.ArgumentTypeError(f"must be COLUMN=VALUE such as shift=um, not '{text}'")
-    return meaning.strip(), value.strip()
+    return _meaning(meaning.strip()), value.strip()
+
+
+def _meaning(text: str) -> str:
+    """The meaning of a column. Raises ArgumentTypeError."""
+    from ..identify.reading import MEANINGS
+
+    if text not in MEANINGS:
+        raise argparse.ArgumentTypeError(f"'{text}' is not the meaning of a column: must be {', '.join(MEANINGS)}")
+    return text
 
 
 def _prior(text: str) -> tuple[str, float]:
@@ -67,27 +89,33 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     complete_files(parser.add_argument("file", type=Path, metavar="CASE.nml", help="case; its steps are not used"), "nml")
     complete_files(parser.add_argument("other", type=Path, metavar="LOOPS.csv", help="measured loops"), "csv")
     parser.add_argument(
-        "--free", type=_free, action="append", required=True, metavar="KEY=START", help="a parameter and its start value; repeat it"
+        "--free",
+        type=_free,
+        action=_Pairs,
+        default=[],
+        required=True,
+        metavar="KEY=START",
+        help="a parameter and its start value; repeat it",
     )
     parser.add_argument(
         "--shift", action="append", default=[], metavar="TEST", help="test in which the shift is prescribed; repeat it"
     )
-    columns = "tangential_force, shift, normal_force, test"
+    columns = "tangential_force, shift, normal_force, test, time"
     parser.add_argument(
         "--column",
         type=_pair,
-        action="append",
+        action=_Pairs,
         default=[],
         metavar="C=NAME",
         help=f"name of a column in the file, or its number from 1; C: {columns}",
     )
-    parser.add_argument("--unit", type=_pair, action="append", default=[], metavar="C=UNIT", help="unit of a column in the file")
-    parser.add_argument("--reverse", action="append", default=[], metavar="C", help="change the sign of a column")
-    parser.add_argument("--thickness", type=float, metavar="LENGTH", help="divides columns that are forces")
+    parser.add_argument("--unit", type=_pair, action=_Pairs, default=[], metavar="C=UNIT", help="unit of a column in the file")
+    parser.add_argument("--reverse", type=_meaning, action="append", default=[], metavar="C", help="change the sign of a column")
+    parser.add_argument("--thickness", type=number, metavar="LENGTH", help="divides columns that are forces")
     parser.add_argument(
         "--prior",
         type=_prior,
-        action="append",
+        action=_Pairs,
         default=[],
         metavar="NAME=WIDTH",
         help="standard deviation of lag [degrees], drift, offset or slack [parts of half the range], 0 for none; repeat it",

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from .._files import target, written
-from .shared import add_output
+from .shared import add_output, number
 
 NAME, HELP = "profile", "write the profile in a file of an instrument as a text"
 
@@ -38,12 +38,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--unit", default="mm", help="unit of length of the case, and of the options (default: mm)")
     parser.add_argument("--file-unit", metavar="UNIT", help="unit of length of a file that names none (default: --unit)")
     parser.add_argument("--inwards", action="store_true", help="heights of the file are the recess: positive into the material")
-    parser.add_argument("--spacing", type=float, metavar="LENGTH", help="distance of heights that have no positions")
-    parser.add_argument("--line", default="middle", help="map: number of the line from 1, middle, or mean (default: middle)")
-    parser.add_argument("--along", choices=("x", "y"), default="x", help="map: direction of the line (default: x)")
+    parser.add_argument("--spacing", type=number, metavar="LENGTH", help="distance of heights that have no positions")
+    parser.add_argument("--line", help="map: number of the line from 1, middle, or mean (default: middle)")
+    parser.add_argument("--along", choices=("x", "y"), help="map: direction of the line (default: x)")
     parser.add_argument("--channel", help="number from 1 or name of the channel (default: that of the format)")
-    parser.add_argument("--lambda-s", type=float, metavar="LENGTH", help="remove waves shorter than this")
-    parser.add_argument("--lambda-c", type=float, metavar="LENGTH", help="remove waves longer than this")
+    parser.add_argument("--lambda-s", type=number, metavar="LENGTH", help="remove waves shorter than this")
+    parser.add_argument("--lambda-c", type=number, metavar="LENGTH", help="remove waves longer than this")
 
 
 def run(options: argparse.Namespace) -> None:
@@ -57,7 +57,7 @@ def run(options: argparse.Namespace) -> None:
         file_unit=options.file_unit,
         outwards=not options.inwards,
         spacing=options.spacing,
-        line=int(options.line) if options.line.isdigit() else options.line,
+        line=int(options.line) if (options.line or "").isdigit() else options.line,
         along=options.along,
         channel=options.channel,
         lambda_s=options.lambda_s,

@@ -31,6 +31,14 @@ def at_least(least: int) -> Callable[[str], int]:
     return whole_number
 
 
+def number(text: str) -> float:
+    """A type for argparse: a number. Raises ArgumentTypeError."""
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"must be a number with a decimal point, such as 0.8, not '{text}'") from None
+
+
 def add_output(parser: argparse.ArgumentParser, metavar: str, meaning: str) -> None:
     """Add the option for the file to write."""
     parser.add_argument("-o", "--output", type=Path, metavar=metavar, help=meaning)

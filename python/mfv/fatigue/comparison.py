@@ -6,7 +6,6 @@ measured ones. Nothing is fitted.
 
 from __future__ import annotations
 
-import csv
 import math
 import os
 from collections.abc import Iterable, Sequence
@@ -15,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from .. import tables
 from .._suggestions import suggestion
 from ..errors import MfvError, input_error
 from ..scene import Body, Friction, Mesh, Output, Scene, Step
@@ -170,49 +170,26 @@ def columns_in_markdown() -> str:
 
 
 def read_tests(path: str | os.PathLike[str]) -> list[PadTest]:
-    """The tests of a text file with columns separated by commas, or by semicolons or tabs with decimal commas, under a line with their names.
+    """The tests of a text file as spreadsheets and programs write it (`mfv.tables`), one in a row under a line with their columns.
 
     Raises OSError; InputError, which names file, line, column and value.
     """
     name = os.fspath(path)
-    try:
-        with open(path, encoding="utf-8-sig", newline="") as file:
-            numbered = [(number, line) for number, line in enumerate(file, start=1) if line.strip() and not line.startswith("#")]
-    except UnicodeDecodeError as error:
-        raise input_error(f"{name}: not a text file in UTF-8 (byte {error.start + 1})") from None
-    head = numbered[0][1] if numbered else ""
-    separator = next((one for one in ("\t", ";") if one in head and "," not in head), ",")
-    rows = _rows(name, numbered, separator)
-    if len(rows) < 2:
+    table = tables.read_rows(path, are_texts=[column for column, about in COLUMNS.items() if about.kind in ("text", "yes or no")])
+    if not table.lines:
         raise input_error(f"{name}: no tests; 'mfv fatigue --new FILE.csv' writes a table to fill in")
-    names = [_column(name, numbered[0][0], cell.strip()) for cell in rows[0][1]]
+    names = [_column(name, table.header, cell) for cell in table.names]
     for column, about in COLUMNS.items():
         if column not in names and about.default is None:
-            raise input_error(f"{name}:{numbered[0][0]}: column {label(column)} is missing: {about.meaning}")
+            raise input_error(f"{name}:{table.header}: column {label(column)} is missing: {about.meaning}")
     for column in names:
         if names.count(column) > 1:
-            raise input_error(f"{name}:{numbered[0][0]}: column {column} is given twice")
-    tests = [_test(f"{name}:{line}", names, row, separator) for line, row in rows[1:]]
+            raise input_error(f"{name}:{table.header}: column {column} is given twice")
+    tests = [_test(f"{name}:{line}", dict(zip(names, table.cells(line))), table) for line in table.lines]
     for place, test in enumerate(tests):
         if any(other["test"] == test["test"] for other in tests[:place]):
             raise input_error(f"{test.where}: test '{test['test']}' is there twice; give every row a name of its own")
     return tests
-
-
-def _rows(file: str, numbered: Sequence[tuple[int, str]], separator: str) -> list[tuple[int, list[str]]]:
-    """The cells of every row that is not empty and the line in which it begins; a text between quotes may extend over lines.
-    Raises InputError."""
-    reader = csv.reader((line for _, line in numbered), delimiter=separator)
-    rows = []
-    while reader.line_num < len(numbered):
-        line = numbered[reader.line_num][0]
-        try:
-            row = next(reader)
-        except csv.Error as error:
-            raise input_error(f"{file}:{line}: not a row of a table: {error}") from None
-        if any(cell.strip() for cell in row):
-            rows.append((line, row))
-    return rows
 
 
 def _column(file: str, line: int, cell: str) -> str:
@@ -226,22 +203,15 @@ def _column(file: str, line: int, cell: str) -> str:
     return name
 
 
-def _test(where: str, names: Sequence[str], row: Sequence[str], separator: str) -> PadTest:
+def _test(where: str, cells: dict[str, str], table: tables.Rows) -> PadTest:
     """A test from its cells. Raises InputError."""
-    if len(row) != len(names):
-        advice = (
-            "; write decimals with a point, and texts with commas between quotes"
-            if len(row) > len(names) and separator == ","
-            else ""
-        )
-        raise input_error(f"{where}: {len(row)} values under {len(names)} columns{advice}")
-    cells = {name: cell.strip() for name, cell in zip(names, row)}
     values: dict[str, Any] = {}
     for name, column in COLUMNS.items():
-        text = cells.get(name, "") or (column.default or "")
+        text = cells.get(name, "")
         if not text and column.default is None:
             raise input_error(f"{where}: {label(name)} is empty: {column.meaning}")
-        values[name] = _value(where, name, text.replace(",", ".") if separator != "," and column.kind != "text" else text)
+        number = table.number(text) if text else float(column.default or "nan")
+        values[name] = _value(where, name, text or column.default or "", number)
     if values["normal_force"] is None and values["peak_pressure"] is None:
         raise input_error(f"{where}: needs normal_force or peak_pressure")
     for name in ("youngs_modulus", "poisson_ratio"):
@@ -260,8 +230,8 @@ def _test(where: str, names: Sequence[str], row: Sequence[str], separator: str) 
     return PadTest(values, where, notes)
 
 
-def _value(where: str, name: str, text: str) -> Any:
-    """The value of a cell, None if it is empty. Raises InputError."""
+def _value(where: str, name: str, text: str, number: float) -> Any:
+    """The value of a cell, None if it is empty. `number`: that in it, or NaN. Raises InputError."""
     kind = COLUMNS[name].kind
     if kind == "text":
         return text
@@ -271,10 +241,6 @@ def _value(where: str, name: str, text: str) -> Any:
         if text.lower() not in ("yes", "no"):
             raise input_error(f"{where}: {name}='{text}': must be yes or no")
         return text.lower() == "yes"
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
     wanted, is_right = {
         "positive": ("a number above 0", number > 0.0),
         "negative": ("a number below 0", number < 0.0),

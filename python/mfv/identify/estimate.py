@@ -80,7 +80,9 @@ class Estimate:
         for loop in dict.fromkeys(each.loop for each in self.rig_errors):
             lines.append(f"{loop}: " + ", ".join(str(each) for each in self.rig_errors if each.loop == loop))
         for label, changes in self.sensitivities.items():
-            shown = ", ".join(f"{name} by {change:+.2%}" for name, change in changes.items())
+            shown = ", ".join(
+                f"{name} by {change:+.2%}" if change < 9.0 else f"{name} more than tenfold" for name, change in changes.items()
+            )
             lines.append(f"{label}, if not estimated, would change {shown}")
         return "\n".join([*lines, *(f"warning: {warning}" for warning in self.warnings)])
 

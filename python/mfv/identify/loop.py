@@ -32,7 +32,8 @@ class Loop:
     first tangential load. `pressed_with_friction`: whether friction acts while the bodies are brought together. `time`: of the rows,
     increasing, from any origin in any unit; without it rows are evenly spaced in time if the driven column is a smooth function of
     their number, otherwise the arc length of the driven column replaces it. `normal_force`: a number, or a column, of which the mean
-    is kept; `normal_force_variation`: half its range over the mean, without noise. Raises InputError.
+    is kept; `normal_force_variation`: half its range over the mean, without noise. `notes`: remarks on the record, which become warnings
+    of a fit. Raises InputError.
     """
 
     tangential_force: Array
@@ -46,6 +47,7 @@ class Loop:
     name: str = "loop"
     time: Array | None = None
     normal_force_variation: float = 0.0
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         self.tangential_force = np.array(self.tangential_force, dtype=float)
@@ -116,6 +118,7 @@ class Loop:
         given; and the path of its driven column. Raises InputError."""
         loop = dataclasses.replace(self, shift=-self.shift) if self.is_reversed else self
         path = path_of(loop)
+        path.warnings.extend(self.notes)
         if self.is_reversed:
             path.warnings.insert(
                 0,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import difflib
 import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -318,6 +319,7 @@ class Problem:
                 if group not in parts or group.startswith("step"):
                     raise input_error(
                         f"'{key}': no such parameter; free are keys of bodies, friction and mesh, and {RIG_STIFFNESS}"
+                        + _proposal(key, parts)
                     )
                 if parts[group]._group().__annotations__.get(name, "float") not in _REAL:
                     raise input_error(f"'{key}': cannot be estimated, since its values are not real numbers")
@@ -494,6 +496,19 @@ class Problem:
             f": the loops reach Q/(mu P) = {ratio:.2g}; add a test with a larger force, best into gross sliding "
             "(mfv.identify.plan predicts what it determines)"
         )
+
+
+def _proposal(key: str, parts: dict[str, Any]) -> str:
+    """The end of a message about an unknown parameter: the keys of groups with that name or the nearest one, as a question."""
+    known = [
+        (f"{group}%{name}", name)
+        for group, part in parts.items()
+        if not group.startswith("step")
+        for name, kind in part._group().__annotations__.items()
+        if kind in _REAL
+    ] + [(RIG_STIFFNESS, RIG_STIFFNESS)]
+    near = [full for full, name in known if name == key] or difflib.get_close_matches(key, [full for full, _ in known], n=1)
+    return f"; did you mean {' or '.join(near)}?" if near else ""
 
 
 def _advance_with_rig(contact: Case, target: float, rig: float) -> None:

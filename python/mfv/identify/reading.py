@@ -15,7 +15,7 @@ from ..errors import MfvError, input_error
 from .loop import Loop
 
 #: Names of the columns of a table of measured loops, in lower case, and what they stand for.
-_COLUMNS = {
+MEANINGS = {
     "tangential_force": ("tangential_force", "q"),
     "shift": ("shift", "u"),
     "normal_force": ("normal_force", "p"),
@@ -24,13 +24,13 @@ _COLUMNS = {
 }
 
 #: Units of a column of times, in lower case; one with another unit is a temperature or a thickness.
-_TIMES = ("", "s", "sec", "seconds", "ms", "us", "µs", "min", "h", "d", "cycles")
+_TIMES = ("", "s", "sec", "second", "seconds", "ms", "us", "µs", "min", "minutes", "h", "hours", "d", "days", "cycles", "-")
 
 
 def read(path: str | os.PathLike[str], **options: Any) -> list[Loop]:
     """The loops of a text file: columns Q, U and P (or tangential_force, shift, normal_force) under a line with their names, which may
     have units, as spreadsheets and programs write them (`mfv.tables`); a column `test` separates several tests, and `time` gives the
-    times of rows. `options`: those of `loops_of`.
+    times of rows, in numbers or as times of the day, with or without dates. `options`: those of `loops_of`.
 
     Raises OSError, InputError.
     """
@@ -59,7 +59,7 @@ def _optional(options: Mapping[str, Any]) -> list[str]:
 def _names_of(given: Mapping[str, str | int] | None) -> dict[str, Sequence[str] | int]:
     """Names of the columns of loops in lower case by their meaning. Raises InputError."""
     _check_meanings("columns", given)
-    names: dict[str, Sequence[str] | int] = dict(_COLUMNS)
+    names: dict[str, Sequence[str] | int] = dict(MEANINGS)
     for meaning, name in (given or {}).items():
         if isinstance(name, bool) or not isinstance(name, (int, str)):
             raise input_error(f"columns: {meaning} must be the name of a column or its number from 1, not {name!r}")
@@ -70,8 +70,8 @@ def _names_of(given: Mapping[str, str | int] | None) -> dict[str, Sequence[str] 
 def _check_meanings(option: str, given: Mapping[str, Any] | None) -> None:
     """Raises InputError for an option that is not a mapping of columns by their meaning."""
     for meaning in given or {}:
-        if meaning not in _COLUMNS:
-            raise input_error(f"{option}: '{meaning}' is not one of {', '.join(_COLUMNS)}")
+        if meaning not in MEANINGS:
+            raise input_error(f"{option}: '{meaning}' is not one of {', '.join(MEANINGS)}")
 
 
 def _check_values(option: str, given: Mapping[str, Any] | None, kind: type, what: str) -> None:
@@ -114,7 +114,7 @@ def _loops(
         column = found[meaning]
         unit = _unit_of(column, meaning, units or {}, length_unit if meaning == "shift" else f"{force_unit}/{length_unit}")
         if meaning == "shift":
-            scale = tables.factor(unit, length_unit) if unit else 1.0
+            scale = tables.factor(unit, length_unit, column.label) if unit else 1.0
         else:
             scale = _force_scale(column.label, unit or (force_unit if thickness else ""), length_unit, force_unit, thickness)
         values[meaning] = (sign or {}).get(meaning, 1.0) * scale * column.numbers()
@@ -122,39 +122,49 @@ def _loops(
     pressing = np.full(force.size, normal_force) if normal_force is not None else values["normal_force"]
     time = found.get("time")
     if "test" not in found:
-        return [Loop(force, shift, pressing, name=name, time=_times(time, slice(None)), **options)]  # type: ignore[arg-type]  # it takes the mean
+        return [Loop(force, shift, pressing, name=name, **_times(time, slice(None)), **options)]  # type: ignore[arg-type]  # it takes the mean
     tests = np.asarray(found["test"].values)
     if tests.shape != force.shape:
         raise input_error(f"{found['test'].label} has {tests.size} rows; {found['tangential_force'].label} has {force.size}")
     if any(test is None or test == "" or test != test for test in tests.tolist()):
         raise input_error(f"{found['test'].label} has empty cells; give every row the name of its test")
     return [
-        Loop(force[rows], shift[rows], pressing[rows], name=f"{name}: {test}", time=_times(time, rows), **options)
+        Loop(force[rows], shift[rows], pressing[rows], name=f"{name}: {test}", **_times(time, rows), **options)
         for test in dict.fromkeys(tests.tolist())
         for rows in [tests == test]
     ]
 
 
-def _times(column: tables.Column | None, rows: Any) -> np.ndarray | None:
-    """The times of the rows of a test; none if they are not increasing numbers, such as times of the day, or have another unit."""
-    if column is None or column.unit.lower() not in _TIMES:
-        return None
-    try:
-        times = column.numbers()[rows]
-    except MfvError:
-        return None
-    return times if np.all(np.diff(times) > 0.0) else None
+def _times(column: tables.Column | None, rows: Any) -> dict[str, Any]:
+    """The times of the rows of a test, as keys of `Loop`; a note if they cannot be used. A column t with another unit is not time."""
+    if column is None:
+        return {}
+    times = column.seconds()
+    if times is None:
+        if column.unit.lower() not in _TIMES:
+            is_other = tables.name_of(column.name) == "t"
+            return {} if is_other else {"notes": (f"{column.label} is not used: {column.unit} is not a unit of time",)}
+        try:
+            times = column.numbers()
+        except MfvError as error:
+            return {"notes": (f"{error} or a time of the day such as 12:03:04.5; the column is not used",)}
+    times = times[rows]
+    stops = np.flatnonzero(~(np.diff(times) > 0.0))
+    if stops.size:
+        place = np.arange(len(column.values))[rows][stops[0]] + 1
+        return {"notes": (f"{column.label} is not used: it does not increase from row {place} to the next",)}
+    return {"time": times}
 
 
 def _force_scale(label: str, unit: str, length_unit: str, force_unit: str, thickness: float | None) -> float:
     """Forces per thickness of the scene per unit of a column. Raises InputError."""
     if not unit:
         return 1.0
-    if tables.is_force(unit):
+    if tables.is_force(unit, label):
         if not thickness:
             raise input_error(
                 f"{label}: is a force in {unit}, where the scene has forces per thickness; give the thickness in {length_unit}, "
                 f"or the unit of the column if it is another, such as units={{'tangential_force': '{force_unit}/{length_unit}'}}"
             )
-        return tables.factor(unit, force_unit) / thickness
-    return tables.factor(unit, f"{force_unit}/{length_unit}")
+        return tables.factor(unit, force_unit, label) / thickness
+    return tables.factor(unit, f"{force_unit}/{length_unit}", label)
