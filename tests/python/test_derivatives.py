@@ -184,7 +184,7 @@ def test_cycles_of_a_history_hold_their_targets() -> None:
     [
         ({"friction": mfv.Friction.static_kinetic(0.7, 0.5)}, "shift", "static_kinetic"),
         ({"solver": mfv.Solver(algorithm="conventional")}, "shift", "algorithm='mfv'"),
-        ({"solver": mfv.Solver(stepping="leap", accuracy=1e-3)}, "shift", "accuracy=0"),
+        ({"solver": mfv.Solver(stepping="leap", accuracy=1e-3)}, "shift", "every event"),
         ({"wear": mfv.Wear(coefficient=1e-3)}, "shift", "&wear"),
         ({}, "body(2)%redius", "did you mean radius"),
         ({}, "body(1)%radius", "not set in the case"),

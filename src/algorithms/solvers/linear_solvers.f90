@@ -10,8 +10,8 @@ module mfv_linear_solvers
    use mfv_krylov_system, only: krylov_system_type
    use mfv_reduced_system, only: reduced_system_type
    use mfv_scene
-   use mfv_solver_costs, only: least_by_default, least_coupled_leap, least_leap, most_after_increments, most_apart, most_at_once, &
-                               most_at_once_coupled, most_bristles, most_bristles_coupled, most_coupled, most_one_way
+   use mfv_solver_costs, only: least_by_default, least_coupled_leap, least_exact, least_leap, most_after_increments, most_apart, &
+                               most_at_once, most_at_once_coupled, most_bristles, most_bristles_coupled, most_coupled, most_one_way
    implicit none
    private
    public :: new_contact_system, choose_stepping
@@ -65,8 +65,9 @@ contains
                                     proportional .and. model%nodes() >= least_by_default)
          if (method%stepping /= stepping_auto) return
          method%stepping = stepping_event
-         if (.not. proportional .or. model%nodes() < merge(least_coupled_leap, least_leap, coupled)) return
-         if (method%accuracy > 0.0_wp .or. .not. coupled .and. model%compliance%is_half_plane) method%stepping = stepping_leap
+         if (.not. proportional) return
+         if (method%accuracy > 0.0_wp .and. model%nodes() >= merge(least_coupled_leap, least_leap, coupled) .or. &
+             .not. coupled .and. model%compliance%is_half_plane .and. model%nodes() >= least_exact) method%stepping = stepping_leap
       end associate
    end subroutine choose_stepping
 

@@ -4,7 +4,7 @@ module mfv_solver_costs
    use mfv_scene, only: solver_dgesv, solver_fft, solver_reduced
    implicit none
    private
-   public :: least_by_default, least_leap, least_coupled_leap
+   public :: least_by_default, least_exact, least_leap, least_coupled_leap
    public :: cheapest_solver, seconds_of_solve, most_after_increments, most_coupled, most_one_way, most_apart, most_at_once, &
              most_at_once_coupled, most_bristles, most_bristles_coupled
 
@@ -51,8 +51,9 @@ module mfv_solver_costs
    !> changes its status (docs/performance.md). Without coupling they take 4 solves.
    integer, parameter :: least_leap = 30, least_coupled_leap = 384
 
-   !> Fewest nodes of the mesh for which large increments may have an error although no accuracy is given.
-   integer, parameter :: least_by_default = 384
+   !> Fewest nodes of the mesh for which large increments may have an error although no accuracy is given; and for which exact ones,
+   !> with the records of their history, take fewer solves than events.
+   integer, parameter :: least_by_default = 384, least_exact = 128
 
 contains
 

@@ -35,8 +35,9 @@ module mfv_leap
 
    !> An interval shorter than this fraction of a segment is not divided where no statuses are found.
    real(wp), parameter :: shortest = 0.2_wp
-   !> Most increments of an interval; those of an exact one, for the history.
-   integer, parameter :: most_increments = 64, recorded = 8
+   !> Most increments of an interval; those of an exact one, for the history: one for so many nodes in contact, which cost less than
+   !> the events of these.
+   integer, parameter :: most_increments = 64, most_recorded = 8, nodes_a_record = 32
    !> Linear solves of event stepping per change of status. Less than one, since event stepping can update the inverse from solve
    !> to solve, and a large increment cannot.
    real(wp), parameter :: solves_per_change = 0.6_wp
@@ -162,7 +163,9 @@ contains
       if (may_depend_on_path(path, interval)) call find_start(path, interval, start)
       call find_stiffness(path, interval, start)
       accepted = is_exact(path, interval)
-      call make_chain(path, interval, merge(recorded, 1, accepted .and. path%record_events), start, chain)
+      increments = 1
+      if (accepted .and. path%record_events) increments = max(1, min(most_recorded, path%state%contact_nodes()/nodes_a_record))
+      call make_chain(path, interval, increments, start, chain)
       if (.not. chain%found) accepted = .false.
       if (.not. chain%found) return
       if (accepted .or. chain%start_error > path%model%scene%method%accuracy &
