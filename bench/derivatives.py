@@ -121,7 +121,6 @@ def lead(keys: Keys, steps: Steps, parameters: tuple[str, ...] = ()) -> mfv.Case
     """The case after all steps; None if it ends early."""
     is_chosen = "mesh%half_width" not in keys  # the mesh, by the steps of the case
     of_steps = {f"step({number})%{key}": value for number, step in enumerate(steps, 1) for key, value in step.items()}
-    keys = {"solver%stepping": "event", **keys}  # as derivatives do
     case = new_case(keys | of_steps if is_chosen else keys)
     case.differentiate(*parameters)
     if is_chosen:

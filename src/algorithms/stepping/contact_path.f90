@@ -20,7 +20,7 @@ module mfv_contact_path
    use mfv_observer, only: observer_type
    use mfv_recent_intervals, only: recent_intervals_type
    use mfv_rolling, only: rolling_type
-   use mfv_scene, only: algorithm_mfv, stepping_event
+   use mfv_scene, only: algorithm_mfv, stepping_event, stepping_leap
    use mfv_slip_zones, only: widest_slip_zone
    use mfv_status
    use mfv_strings, only: to_text
@@ -187,7 +187,9 @@ contains
       allocate (self%parameters, source=parameters)
       allocate (self%derivatives)
       call self%derivatives%begin(self%parameters, self%model, self%state%fields)
-      self%model%scene%method%stepping = stepping_event
+      associate (stepping => self%model%scene%method%stepping)
+         if (stepping == stepping_leap) stepping = stepping_event
+      end associate
    end subroutine differentiate
 
    !> Derivatives of the displacements after the mesh or the problem has changed.
