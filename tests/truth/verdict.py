@@ -239,8 +239,8 @@ def bar_of(base: mfv.Result, path: str, value: float) -> float:
     for factor in factors:
         error, of = _error_of(base, factor), abs(float(base.observables[factor]))
         if not (math.isnan(error) and factor in PRESCRIBED):
-            relative += error / of if of > 0.0 else 0.0
-    return relative * abs(value)
+            relative += error / of if of > 0.0 else math.inf if error > 0.0 else 0.0
+    return relative * abs(value) if math.isfinite(relative) else relative
 
 
 def _error_of(base: mfv.Result, observable: str) -> float:

@@ -7,6 +7,7 @@ module mfv_discretisation_error
    use mfv_closed_form, only: alike
    use mfv_compliance, only: block_up, block_wt
    use mfv_contact_model, only: contact_model_type
+   use mfv_contact_state, only: contact_state_type
    use mfv_corners, only: corner_type, find_corner
    use mfv_error_bar
    use mfv_friction, only: friction_coefficient_type
@@ -19,9 +20,10 @@ module mfv_discretisation_error
    use mfv_resolution, only: add_unresolved, all_quantities, find_unresolved, is_unresolved, undersampling, unresolved_type
    use mfv_scene, only: scene_type
    use mfv_simulation, only: history_none, new_simulation, simulation_type, states_steps
+   use mfv_slip_zones, only: contact_interval, largest_resolved_error, slip_record_type
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
-   use mfv_zone_edges, only: find_patches, largest_shear, patch_type, zones_of
+   use mfv_zone_edges, only: find_patches, largest_shear, patch_type, slipping_run, zones_of
    implicit none
    private
    public :: estimate_error, coarser_scene, scene_on_mesh, fix_cycles, nearest_mesh, allowances_of_behaviours, has_coarser_meshes
@@ -71,7 +73,7 @@ contains
                associate (behaviour => observables(place)%error)
                   estimate%bar(place) = new_error_bar(nodes, values(place, :), allowances(place, :), &
                                                       any(behaviour == [error_edges, error_stick, error_place]), &
-                                                      is_smooth(simulation%contact%model%scene, behaviour), &
+                                                      is_smooth(simulation%contact%model, place), &
                                                       all(behaviour /= [error_pressure, error_shear, error_local]))
                end associate
                if (allocated(simulation%contact%model%scene%mesh%ends)) &
@@ -110,13 +112,19 @@ contains
    end function peak_is_at_corner
 
    !> Whether observables with this behaviour can converge faster than with the first power of the interval: not those of edges, and
-   !> not the peak pressure at a kink of a profile.
-   pure logical function is_smooth(scene, behaviour)
-      type(scene_type), intent(in) :: scene
-      integer, intent(in) :: behaviour
+   !> not the peak pressure at a kink of a profile, nor largest tractions of states with cusps by full coupling, and nothing under
+   !> friction that weakens or creeps, node by node.
+   pure logical function is_smooth(model, place)
+      type(contact_model_type), intent(in) :: model
+      integer, intent(in) :: place
 
-      is_smooth = any(behaviour == [error_load, error_smooth, error_pressure, error_shear])
-      if (behaviour == error_pressure) is_smooth = all([scene%lower%shape, scene%upper%shape] /= shape_profile)
+      associate (scene => model%scene, behaviour => observables(place)%error)
+         is_smooth = any(behaviour == [error_load, error_smooth, error_pressure, error_shear])
+         if (allocated(scene%friction%law)) is_smooth = is_smooth .and. scene%friction%is_proportional()
+         if (behaviour == error_pressure) is_smooth = is_smooth .and. all([scene%lower%shape, scene%upper%shape] /= shape_profile)
+         if (any(behaviour == [error_pressure, error_shear]) .and. index(observables(place)%name, 'largest_') == 1) &
+            is_smooth = is_smooth .and. .not. (model%tangential .and. pressing_shears(model))
+      end associate
    end function is_smooth
 
    !> Whether an observable is modelled, is not prescribed, and is not zero on all meshes.
@@ -385,11 +393,31 @@ contains
          where (observables%error == error_edges .and. observables%unit == '1') &
             allowances = 2.0_wp*allowances/max(values(observable_place('contact_length')), model%interval())
          where (observables%name == 'contact_length') allowances = 2.0_wp*allowances
+         call add_coarse_slip(simulation%slip, 'dissipation')
+         if (simulation%cycle_count > 0) then
+            call add_coarse_slip(simulation%cycles(simulation%cycle_count)%slip(), 'cycle_dissipation')
+            call add_coarse_slip(simulation%cycles(simulation%cycle_count)%slip(), 'loss_factor')
+            call add_coarse_slip(simulation%cycles(simulation%cycle_count)%first_slip, 'first_cycle_dissipation')
+         end if
          do i = 1, observable_count
             if (observables(i)%error == error_place .and. .not. ieee_is_nan(values(i))) &
                allowances(i) = model%width(minloc(abs(model%x - values(i)), dim=1))
          end do
       end associate
+
+   contains
+
+      !> The error of a dissipation by slip zones of few intervals.
+      subroutine add_coarse_slip(slip, name)
+         type(slip_record_type), intent(in) :: slip
+         character(*), intent(in) :: name
+
+         associate (value => values(observable_place(name)), &
+                    interval => contact_interval(simulation%contact%model, simulation%contact%state))
+            if (.not. ieee_is_nan(value)) &
+               allowances(observable_place(name)) = abs(value)*min(slip%error_number()*interval**2, largest_resolved_error)
+         end associate
+      end subroutine add_coarse_slip
    end function interval_allowances
 
    !> Uncertainty within an interval of observables of each behaviour: that of the edges of contact and stick zones (the half-width,
@@ -398,12 +426,12 @@ contains
       type(simulation_type), intent(in) :: simulation
       real(wp) :: of_behaviour(0:error_place)
       type(patch_type), allocatable :: patches(:)
-      real(wp) :: contact, stick, length, largest, nodal
-      integer :: i
+      real(wp) :: contact, stick, length, largest, nodal, part(2)
+      integer :: i, points
 
       associate (state => simulation%contact%state, model => simulation%contact%model)
          call find_patches(model, state, patches)
-         call widen_uncertainties(model, patches)
+         call widen_uncertainties(model, state, has_receded(simulation), patches)
          ! Errors of the two edges of one patch add up; those of several patches are independent.
          contact = sqrt(2.0_wp*sum(patches%left_error**2 + patches%right_error**2))
          stick = model%interval()
@@ -419,8 +447,12 @@ contains
             if (model%compliance%has_block(block_wt)) then
                of_behaviour(error_pressure) = room_at_cusp(state%fields%pressure, holds(state%status))
                ! The pressure at the edge of a stick zone, which limits the shear there, is interpolated across a cusp.
-               if (pressing_shears(model)) of_behaviour(error_shear) = largest - nodal
+               if (pressing_shears(model) .and. largest > nodal) of_behaviour(error_shear) = &
+                  max(largest - nodal, model%scene%friction%static%largest()*of_behaviour(error_pressure))
             end if
+            call undersampling(simulation, .false., part(1), points)
+            call undersampling(simulation, .true., part(2), points)
+            of_behaviour(error_pressure) = max(of_behaviour(error_pressure), maxval(part)*maxval(state%fields%pressure))
             if (.not. largest > nodal) &
                of_behaviour(error_shear) = room_at_kink(abs(state%fields%shear), holds(state%status))
          end if
@@ -428,12 +460,16 @@ contains
    end function allowances_of_behaviours
 
    !> Larger uncertainties of edges where the exponents of the tractions are less certain (docs/verification.md): of contact with
-   !> full coupling, where they depend on the friction, and of stick zones that can have grown.
-   pure subroutine widen_uncertainties(model, patches)
+   !> full coupling, where they depend on the friction, and of stick zones that can have grown. If the contact `has_receded` with
+   !> full coupling, its edge is known to an interval unless the outermost nodes, from which it is found, slip alike.
+   pure subroutine widen_uncertainties(model, state, has_receded, patches)
       type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      logical, intent(in) :: has_receded
       type(patch_type), intent(inout) :: patches(:)
       !> In intervals; the last one where fewer than two nodes slip beside the stick zone.
-      real(wp), parameter :: coupled = 0.02_wp, grown = 0.2_wp, grown_to_end = 0.5_wp
+      real(wp), parameter :: coupled = 0.02_wp, receded = 0.5_wp, grown = 0.2_wp, grown_to_end = 0.5_wp
+      integer, parameter :: fewest_alike = 4
       logical :: can_grow, depends_on_friction
       integer :: i, j
 
@@ -442,9 +478,11 @@ contains
       do i = 1, size(patches)
          associate (patch => patches(i), width => model%width)
             if (depends_on_friction .and. .not. patch%left_ends) &
-               patch%left_error = max(patch%left_error, coupled*width(patch%first))
+               patch%left_error = max(patch%left_error, width(patch%first)*merge(receded, coupled, has_receded .and. &
+                                                        slipping_run(state, patch%first, 1) < fewest_alike))
             if (depends_on_friction .and. .not. patch%right_ends) &
-               patch%right_error = max(patch%right_error, coupled*width(patch%last))
+               patch%right_error = max(patch%right_error, width(patch%last)*merge(receded, coupled, has_receded .and. &
+                                                          slipping_run(state, patch%last, -1) < fewest_alike))
             if (.not. can_grow) cycle
             do j = 1, size(patch%stick)
                associate (zone => patch%stick(j))
@@ -456,6 +494,16 @@ contains
          end associate
       end do
    end subroutine widen_uncertainties
+
+   !> Whether the contact was wider by an interval or more.
+   pure logical function has_receded(simulation)
+      type(simulation_type), intent(in) :: simulation
+
+      associate (model => simulation%contact%model, state => simulation%contact%state)
+         has_receded = simulation%slip%half_width > 0.5_wp*(sum(model%width, mask=in_contact(state%status)) + &
+                                                            contact_interval(model, state))
+      end associate
+   end function has_receded
 
    !> Whether stick zones can have grown while friction acted, so that the exponent at their edges is not known: pressing with
    !> coupling or oblique loading.
@@ -510,8 +558,8 @@ contains
       real(wp), intent(in) :: values(:)
       logical, intent(in) :: held(:)
       integer, parameter :: reach = 3
-      real(wp) :: slope(-1:1)
-      integer :: peak, side
+      real(wp) :: slope(-1:1), bend(-2:2)
+      integer :: peak, side, i
 
       room = 0.0_wp
       peak = maxloc(values, dim=1)
@@ -525,6 +573,9 @@ contains
          ! The steep side of a cusp is a root.
          if (all(held(peak - reach:peak + reach))) room = min(4.0_wp*flat, 0.6_wp*steep)
       end associate
+      ! More than the curvature beside it.
+      bend = [(values(peak + i) - 0.5_wp*(values(peak + i - 1) + values(peak + i + 1)), i=-2, 2)]
+      room = max(room, bend(0) - max(min(bend(-2), bend(2)), 0.0_wp))
    end function room_at_kink
 
 end module mfv_discretisation_error

@@ -1,12 +1,13 @@
 !> Which quantities of a simulation its mesh does not resolve, and why: few nodes in contact patches, profiles with more points
 !> than the mesh has nodes, rounded edges, slip zones. Warnings and error bars take it from here.
 module mfv_resolution
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use mfv_body, only: body_type, shape_matrix, shape_profile, shape_rounded_punch
    use mfv_contact_model, only: needs_equal_intervals
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_approach
-   use mfv_node_status, only: in_contact
+   use mfv_node_status, only: holds, in_contact, slip_sign
    use mfv_observables, only: observable_count, observables
    use mfv_profile_sampling, only: find_missed, negligible_pressure, pressure_of_wave
    use mfv_simulation, only: simulation_type
@@ -43,6 +44,8 @@ contains
          call check_rounded_edges(simulation, .true., unresolved)
       end if
       call check_slip_zones(simulation, unresolved)
+      call check_stick_zones(simulation, unresolved)
+      call check_rolling(simulation, unresolved)
    end subroutine find_unresolved
 
    !> Add a cause: `quantities` (names of observables, separated by blanks), why they are not resolved, and what to do.
@@ -391,5 +394,42 @@ contains
          width = min(width, its_width)
       end subroutine add
    end subroutine check_slip_zones
+
+   !> Zones without a node, which change the number of stick zones: of stick between neighbouring nodes that slip in opposite
+   !> directions, and of slip where sticking nodes are near their friction limit.
+   subroutine check_stick_zones(simulation, unresolved)
+      type(simulation_type), intent(in) :: simulation
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
+      !> Part of the friction limit.
+      real(wp), parameter :: near = 0.9_wp
+      real(wp) :: ratio(simulation%contact%model%nodes())
+      integer :: node
+
+      associate (model => simulation%contact%model, state => simulation%contact%state)
+         if (.not. model%tangential .or. .not. allocated(model%scene%friction%law)) return
+         ratio = 0.0_wp
+         where (holds(state%status) .and. state%fields%pressure > 0.0_wp) &
+            ratio = abs(state%fields%shear)/(model%static_friction*state%fields%pressure)
+         do node = 2, model%nodes() - 1
+            if (slip_sign(state%status(node))*slip_sign(state%status(node + 1)) >= 0 .and. .not. &
+                (all(holds(state%status(node - 1:node + 1))) .and. ratio(node) > max(near, ratio(node - 1), ratio(node + 1)))) cycle
+            call add_unresolved(unresolved, 'stick_zones', 'near x = '//to_text(model%x(node), 4)//' a stick or slip zone has '// &
+                                'no node', 'use more nodes')
+            return
+         end do
+      end associate
+   end subroutine check_stick_zones
+
+   !> Creepage, a mean over some intervals, while it changes.
+   subroutine check_rolling(simulation, unresolved)
+      type(simulation_type), intent(in) :: simulation
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
+
+      associate (contact => simulation%contact)
+         if (ieee_is_nan(contact%rolling%creepage()) .or. contact%rolling%is_steady(contact%half_width())) return
+         call add_unresolved(unresolved, 'creepage', 'rolled by less than twice the contact length under constant forces: '// &
+                             'the creepage still changes within the intervals of its mean', 'roll farther')
+      end associate
+   end subroutine check_rolling
 
 end module mfv_resolution
