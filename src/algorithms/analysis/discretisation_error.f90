@@ -69,7 +69,7 @@ contains
             if (observables(place)%error == error_none .or. ieee_is_nan(values(place, 1))) cycle
             if (is_unresolved(unresolved, trim(observables(place)%name))) then
                estimate%bar(place) = unresolved_bar(values(place, :))
-            else if (is_there(simulation%contact%model, place, values(place, :))) then
+            else if (is_there(simulation%contact%model, place, values(place, :), allowances(place, :))) then
                associate (behaviour => observables(place)%error)
                   estimate%bar(place) = new_error_bar(nodes, values(place, :), allowances(place, :), &
                                                       any(behaviour == [error_edges, error_stick, error_place]), &
@@ -127,11 +127,11 @@ contains
       end associate
    end function is_smooth
 
-   !> Whether an observable is modelled, is not prescribed, and is not zero on all meshes.
-   pure logical function is_there(model, place, values)
+   !> Whether an observable is modelled, is not prescribed, and is not zero on all meshes and certainly so.
+   pure logical function is_there(model, place, values, allowances)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: place
-      real(wp), intent(in) :: values(:)
+      real(wp), intent(in) :: values(:), allowances(:)
       !> Relative difference of a prescribed load on two meshes.
       real(wp), parameter :: round_off = 1.0e-10_wp
 
@@ -142,6 +142,7 @@ contains
          is_there = maxval(abs(values - values(1))) > round_off*maxval(abs(values))
       case default
          is_there = any(abs(values) > 0.0_wp)
+         if (any(observables(place)%error == [error_smooth, error_place])) is_there = is_there .or. any(allowances > 0.0_wp)
       end select
    end function is_there
 
@@ -393,11 +394,13 @@ contains
          where (observables%error == error_edges .and. observables%unit == '1') &
             allowances = 2.0_wp*allowances/max(values(observable_place('contact_length')), model%interval())
          where (observables%name == 'contact_length') allowances = 2.0_wp*allowances
-         call add_coarse_slip(simulation%slip, 'dissipation')
+         call add_coarse_slip(simulation%slip, 'dissipation', 1.0_wp)
          if (simulation%cycle_count > 0) then
-            call add_coarse_slip(simulation%cycles(simulation%cycle_count)%slip(), 'cycle_dissipation')
-            call add_coarse_slip(simulation%cycles(simulation%cycle_count)%slip(), 'loss_factor')
-            call add_coarse_slip(simulation%cycles(simulation%cycle_count)%first_slip, 'first_cycle_dissipation')
+            associate (cycle => simulation%cycles(simulation%cycle_count))
+               call add_coarse_slip(cycle%slip(), 'cycle_dissipation', 1.0_wp)
+               call add_coarse_slip(cycle%first_slip, 'first_cycle_dissipation', 1.0_wp)
+               call add_coarse_slip(cycle%slip(), 'loss_factor', pi*cycle%force_amplitude()*cycle%shift_amplitude())
+            end associate
          end if
          do i = 1, observable_count
             if (observables(i)%error == error_place .and. .not. ieee_is_nan(values(i))) &
@@ -407,15 +410,27 @@ contains
 
    contains
 
-      !> The error of a dissipation by slip zones of few intervals.
-      subroutine add_coarse_slip(slip, name)
+      !> The error of a dissipation over `unit` (force) by slip zones of few intervals, or within the outermost one at either end,
+      !> where the slip is at most of the order of mu p times the interval over the contact modulus.
+      subroutine add_coarse_slip(slip, name, unit)
          type(slip_record_type), intent(in) :: slip
          character(*), intent(in) :: name
+         real(wp), intent(in) :: unit
+         logical, allocatable :: touching(:)
+         integer :: ends(2)
+         real(wp) :: hidden
 
-         associate (value => values(observable_place(name)), &
-                    interval => contact_interval(simulation%contact%model, simulation%contact%state))
-            if (.not. ieee_is_nan(value)) &
-               allowances(observable_place(name)) = abs(value)*min(slip%error_number()*interval**2, largest_resolved_error)
+         if (ieee_is_nan(values(observable_place(name)))) return
+         associate (allowance => allowances(observable_place(name)), value => abs(values(observable_place(name))), &
+                    model => simulation%contact%model, state => simulation%contact%state)
+            allowance = value*min(slip%error_number()*contact_interval(model, state)**2, largest_resolved_error)
+            touching = in_contact(state%status)
+            if (.not. any(touching .and. abs(state%fields%shear) > 0.0_wp)) return
+            ends = [findloc(touching, .true., dim=1), findloc(touching, .true., dim=1, back=.true.)]
+            hidden = sum((model%static_friction(ends)*state%fields%pressure(ends)*model%width(ends))**2) &
+                     /(model%compliance%modulus*unit)
+            ! A larger dissipation is that of nodes.
+            if (hidden > 0.0_wp) allowance = allowance + hidden*min(hidden/max(value, tiny(value)), 1.0_wp)
          end associate
       end subroutine add_coarse_slip
    end function interval_allowances

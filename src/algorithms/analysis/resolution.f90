@@ -320,7 +320,7 @@ contains
       nodes = resolved_nodes
       width = huge(width)
       interval = contact_interval(simulation%contact%model, simulation%contact%state)
-      call add_work(simulation%slip, 'dissipation')
+      call add_work(simulation%slip, 'dissipation largest_slip_range')
       ! The tension behind a contact grows with the root of its slip zone.
       call add_zones(simulation%slip, 'stick_ratio peak_shear extremes'//tensions(simulation))
       if (.not. simulation%slip%is_coarse_now(interval)) then
@@ -329,7 +329,7 @@ contains
       end if
       if (simulation%cycle_count > 0) then
          associate (cycle => simulation%cycles(simulation%cycle_count))
-            call add_work(cycle%slip(), 'cycle_dissipation loss_factor nonlinear_shift')
+            call add_work(cycle%slip(), 'cycle_dissipation loss_factor nonlinear_shift largest_slip_range')
             call add_work(cycle%first_slip, 'first_cycle_dissipation')
             call add_zones(cycle%loading_slip, 'stick_ratio_loading')
             call add_zones(cycle%reversal%slip, 'stick_ratio_reversal extremes')
@@ -396,13 +396,16 @@ contains
    end subroutine check_slip_zones
 
    !> Zones without a node, which change the number of stick zones: of stick between neighbouring nodes that slip in opposite
-   !> directions, and of slip where sticking nodes are near their friction limit.
+   !> directions, and of slip where sticking nodes are near their friction limit. And stick zones with few nodes between opposite
+   !> slip, in which the shear traction changes its sign: the stress along the surface would have no limit without them.
    subroutine check_stick_zones(simulation, unresolved)
       type(simulation_type), intent(in) :: simulation
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
       !> Part of the friction limit.
       real(wp), parameter :: near = 0.9_wp
       real(wp) :: ratio(simulation%contact%model%nodes())
+      type(zone_type), allocatable :: zones(:)
+      character(len=80) :: names
       integer :: node
 
       associate (model => simulation%contact%model, state => simulation%contact%state)
@@ -415,7 +418,21 @@ contains
                 (all(holds(state%status(node - 1:node + 1))) .and. ratio(node) > max(near, ratio(node - 1), ratio(node + 1)))) cycle
             call add_unresolved(unresolved, 'stick_zones', 'near x = '//to_text(model%x(node), 4)//' a stick or slip zone has '// &
                                 'no node', 'use more nodes')
-            return
+            exit
+         end do
+         zones = zones_of(holds(state%status))
+         do node = 1, size(zones)
+            associate (first => zones(node)%first, last => zones(node)%last)
+               if (first == 1 .or. last == model%nodes() .or. last - first + 1 >= resolved_nodes) cycle
+               if (slip_sign(state%status(first - 1))*slip_sign(state%status(last + 1)) >= 0) cycle
+               names = tensions(simulation)
+               if (has_interior(model%scene%lower)) names = trim(names)//' largest_lower_tension'
+               if (has_interior(model%scene%upper)) names = trim(names)//' largest_upper_tension'
+               call add_unresolved(unresolved, names(2:), 'near x = '//to_text(model%x(first), 4)//' a stick zone between '// &
+                                   'opposite slip has only '//to_text(last - first + 1)// &
+                                   trim(merge(' node ', ' nodes', first == last)), 'use more nodes')
+               return
+            end associate
          end do
       end associate
    end subroutine check_stick_zones

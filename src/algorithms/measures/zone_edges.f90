@@ -647,6 +647,8 @@ contains
       type(samples_type), intent(in) :: samples
       !> By the largest of unequal intervals: their discretisation error moves the edge (docs/verification.md).
       real(wp), parameter :: by_largest = 0.005_wp
+      !> Beyond it the next node would be in contact: the traction does not vanish as a root.
+      real(wp), parameter :: farthest = 1.35_wp
       real(wp) :: near, farther
       logical :: found(2)
 
@@ -659,7 +661,7 @@ contains
          farther = near
          call find_solved_distance(samples%inwards, samples%value, samples%power, .true., farther, found(2))
          uncertainty = error_if_unknown
-         if (all(found)) uncertainty = min(max(least_error, abs(farther - near)), error_if_unknown)
+         if (all(found) .and. near < farthest) uncertainty = min(max(least_error, abs(farther - near)), error_if_unknown)
          return
       end if
       uncertainty = error_if_unknown
