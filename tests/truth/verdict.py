@@ -235,6 +235,8 @@ def bar_of(base: mfv.Result, path: str, value: float) -> float:
     name = path.split("/")[1]
     if str(base.attributes.get("error_estimate", "")).startswith("none"):
         return math.inf
+    if path == "cycles/shift_drift":  # the difference of two shifts
+        return 2.0 * _error_of(base, "shift")
     if re.fullmatch(r"contact_centre_(reversal|return)", name):
         shift = name.replace("contact_centre", "patch_shift")
         if base.observables.patches > 1:  # without a half-width

@@ -12,14 +12,14 @@ module mfv_discretisation_error
    use mfv_error_bar
    use mfv_friction, only: friction_coefficient_type
    use mfv_kinds, only: pi, wp
-   use mfv_motions, only: control_keep, motion_approach, motion_shift
+   use mfv_motions, only: bulk_motions, control_keep, motion_approach, motion_shift
    use mfv_node_status, only: holds, in_contact
    use mfv_observables
    use mfv_observer, only: observer_type, relay_type
    use mfv_profile_sampling, only: negligible_pressure
    use mfv_resolution, only: add_unresolved, all_quantities, find_unresolved, is_unresolved, undersampling, unresolved_type
    use mfv_scene, only: scene_type
-   use mfv_simulation, only: history_none, new_simulation, simulation_type, states_steps
+   use mfv_simulation, only: history_none, mark_reversal, new_simulation, simulation_type, states_steps
    use mfv_slip_zones, only: contact_interval, largest_resolved_error, slip_record_type
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
@@ -124,6 +124,8 @@ contains
          if (behaviour == error_pressure) is_smooth = is_smooth .and. all([scene%lower%shape, scene%upper%shape] /= shape_profile)
          if (any(behaviour == [error_pressure, error_shear]) .and. index(observables(place)%name, 'largest_') == 1) &
             is_smooth = is_smooth .and. .not. (model%tangential .and. pressing_shears(model))
+         ! It is that of an edge, mostly.
+         if (observables(place)%name == 'largest_slip_range') is_smooth = .false.
       end associate
    end function is_smooth
 
@@ -381,15 +383,20 @@ contains
    end subroutine average
 
    !> Uncertainty of each observable within an interval, shape (observable_count); of places the interval there. Those of turning
-   !> points are as large as those of the present state. `values`: of the observables.
+   !> points are as large as those of the present state, at the far end of the last cycle at least as those there. `values`: of the
+   !> observables.
    function interval_allowances(simulation, values) result(allowances)
       type(simulation_type), intent(in) :: simulation
       real(wp), intent(in) :: values(:)
       real(wp) :: allowances(observable_count), of_behaviour(0:error_place)
       integer :: i
 
-      of_behaviour = allowances_of_behaviours(simulation)
+      of_behaviour = allowances_of_behaviours(simulation, simulation%contact%state)
       allowances = of_behaviour(observables%error)
+      if (simulation%cycle_count > 0 .and. simulation%marks(mark_reversal)%step > 0) then
+         of_behaviour = allowances_of_behaviours(simulation, simulation%padded(simulation%marks(mark_reversal)))
+         where (index(observables%name, '_reversal') > 0) allowances = max(allowances, of_behaviour(observables%error))
+      end if
       associate (model => simulation%contact%model)
          where (observables%error == error_edges .and. observables%unit == '1') &
             allowances = 2.0_wp*allowances/max(values(observable_place('contact_length')), model%interval())
@@ -423,7 +430,8 @@ contains
          if (ieee_is_nan(values(observable_place(name)))) return
          associate (allowance => allowances(observable_place(name)), value => abs(values(observable_place(name))), &
                     model => simulation%contact%model, state => simulation%contact%state)
-            allowance = value*min(slip%error_number()*contact_interval(model, state)**2, largest_resolved_error)
+            if (name /= 'loss_factor') &
+               allowance = value*min(slip%error_number()*contact_interval(model, state)**2, largest_resolved_error)
             touching = in_contact(state%status)
             if (.not. any(touching .and. abs(state%fields%shear) > 0.0_wp)) return
             ends = [findloc(touching, .true., dim=1), findloc(touching, .true., dim=1, back=.true.)]
@@ -435,18 +443,19 @@ contains
       end subroutine add_coarse_slip
    end function interval_allowances
 
-   !> Uncertainty within an interval of observables of each behaviour: that of the edges of contact and stick zones (the half-width,
-   !> the stick ratio), and that of cusps.
-   function allowances_of_behaviours(simulation) result(of_behaviour)
+   !> Uncertainty within an interval of observables of each behaviour in a state: that of the edges of contact and
+   !> stick zones (the half-width, the stick ratio), and that of cusps.
+   function allowances_of_behaviours(simulation, state) result(of_behaviour)
       type(simulation_type), intent(in) :: simulation
+      type(contact_state_type), intent(in) :: state
       real(wp) :: of_behaviour(0:error_place)
       type(patch_type), allocatable :: patches(:)
       real(wp) :: contact, stick, length, largest, nodal, part(2)
       integer :: i, points
 
-      associate (state => simulation%contact%state, model => simulation%contact%model)
+      associate (model => simulation%contact%model)
          call find_patches(model, state, patches)
-         call widen_uncertainties(model, state, has_receded(simulation), patches)
+         call widen_uncertainties(model, state, has_receded(simulation, state), patches)
          ! Errors of the two edges of one patch add up; those of several patches are independent.
          contact = sqrt(2.0_wp*sum(patches%left_error**2 + patches%right_error**2))
          stick = model%interval()
@@ -494,10 +503,10 @@ contains
          associate (patch => patches(i), width => model%width)
             if (depends_on_friction .and. .not. patch%left_ends) &
                patch%left_error = max(patch%left_error, width(patch%first)*merge(receded, coupled, has_receded .and. &
-                                                        slipping_run(state, patch%first, 1) < fewest_alike))
+                                                                                slipping_run(state, patch%first, 1) < fewest_alike))
             if (depends_on_friction .and. .not. patch%right_ends) &
                patch%right_error = max(patch%right_error, width(patch%last)*merge(receded, coupled, has_receded .and. &
-                                                          slipping_run(state, patch%last, -1) < fewest_alike))
+                                                                                slipping_run(state, patch%last, -1) < fewest_alike))
             if (.not. can_grow) cycle
             do j = 1, size(patch%stick)
                associate (zone => patch%stick(j))
@@ -510,13 +519,16 @@ contains
       end do
    end subroutine widen_uncertainties
 
-   !> Whether the contact was wider by an interval or more.
-   pure logical function has_receded(simulation)
+   !> Whether the contact was wider than in a state by an interval or more, or the surfaces are stretched: shear tractions at the
+   !> edges are then not those of one slip zone.
+   pure logical function has_receded(simulation, state)
       type(simulation_type), intent(in) :: simulation
+      type(contact_state_type), intent(in) :: state
 
-      associate (model => simulation%contact%model, state => simulation%contact%state)
+      associate (model => simulation%contact%model)
          has_receded = simulation%slip%half_width > 0.5_wp*(sum(model%width, mask=in_contact(state%status)) + &
-                                                            contact_interval(model, state))
+                                                            contact_interval(model, state)) .or. &
+                       any(abs(state%fields%motion(bulk_motions)) > 0.0_wp)
       end associate
    end function has_receded
 

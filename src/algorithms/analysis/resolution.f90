@@ -6,7 +6,7 @@ module mfv_resolution
    use mfv_contact_model, only: needs_equal_intervals
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
-   use mfv_motions, only: motion_approach
+   use mfv_motions, only: motion_approach, motion_rotation
    use mfv_node_status, only: holds, in_contact, slip_sign
    use mfv_observables, only: observable_count, observables
    use mfv_profile_sampling, only: find_missed, negligible_pressure, pressure_of_wave
@@ -46,6 +46,7 @@ contains
       call check_slip_zones(simulation, unresolved)
       call check_stick_zones(simulation, unresolved)
       call check_rolling(simulation, unresolved)
+      call check_worn_shape(simulation, unresolved)
    end subroutine find_unresolved
 
    !> Add a cause: `quantities` (names of observables, separated by blanks), why they are not resolved, and what to do.
@@ -414,8 +415,10 @@ contains
          where (holds(state%status) .and. state%fields%pressure > 0.0_wp) &
             ratio = abs(state%fields%shear)/(model%static_friction*state%fields%pressure)
          do node = 2, model%nodes() - 1
+            ! Where rolling began or turned, the ratio has a maximum that is resolved.
             if (slip_sign(state%status(node))*slip_sign(state%status(node + 1)) >= 0 .and. .not. &
-                (all(holds(state%status(node - 1:node + 1))) .and. ratio(node) > max(near, ratio(node - 1), ratio(node + 1)))) cycle
+                (.not. model%moves(motion_rotation) .and. all(holds(state%status(node - 1:node + 1))) .and. &
+                 ratio(node) > max(near, ratio(node - 1), ratio(node + 1)))) cycle
             call add_unresolved(unresolved, 'stick_zones', 'near x = '//to_text(model%x(node), 4)//' a stick or slip zone has '// &
                                 'no node', 'use more nodes')
             exit
@@ -448,5 +451,19 @@ contains
                              'the creepage still changes within the intervals of its mean', 'roll farther')
       end associate
    end subroutine check_rolling
+
+   !> Wear mostly by cycles that change the pressures too much: the shape, and with it the tractions, are then as uncertain as it.
+   subroutine check_worn_shape(simulation, unresolved)
+      type(simulation_type), intent(in) :: simulation
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
+      real(wp), parameter :: most = 0.5_wp
+
+      associate (model => simulation%contact%model, state => simulation%contact%state)
+         if (.not. model%scene%wear%acts() .or. simulation%cycle_count == 0) return
+         if (.not. state%coarsely_worn > most*model%force(state%worn)) return
+         call add_unresolved(unresolved, 'peak_pressure peak_shear extremes worn_area wear_depth', 'most of the wear is from '// &
+                             'cycles that each change the pressures by much', 'use a smaller coefficient and more cycles')
+      end associate
+   end subroutine check_worn_shape
 
 end module mfv_resolution

@@ -641,14 +641,17 @@ contains
       if (found) distance = beyond + 0.5_wp
    end subroutine find_graded_distance
 
-   !> Uncertainty of the zero of nearly linear values, intervals: the distance of the zeros by nearer and by farther values, which is
-   !> small with a known discretisation error, unless the edge is near another one or a corner.
+   !> Uncertainty of the zero of nearly linear values, intervals: the distance of the zeros by nearer and by farther values, which
+   !> is small with a known discretisation error, unless the edge is near another one or a corner.
    pure real(wp) function uncertainty(samples)
       type(samples_type), intent(in) :: samples
       !> By the largest of unequal intervals: their discretisation error moves the edge (docs/verification.md).
       real(wp), parameter :: by_largest = 0.005_wp
       !> Beyond it the next node would be in contact: the traction does not vanish as a root.
       real(wp), parameter :: farthest = 1.35_wp
+      !> The error of the fit through the second to fourth node over the difference from that of the third to fifth, whose error is
+      !> 2.7 times as large: errors are in proportion to the product of the distances.
+      real(wp), parameter :: of_difference = 0.6_wp
       real(wp) :: near, farther
       logical :: found(2)
 
@@ -661,7 +664,8 @@ contains
          farther = near
          call find_solved_distance(samples%inwards, samples%value, samples%power, .true., farther, found(2))
          uncertainty = error_if_unknown
-         if (all(found) .and. near < farthest) uncertainty = min(max(least_error, abs(farther - near)), error_if_unknown)
+         if (all(found) .and. near < farthest) &
+            uncertainty = min(max(least_error, of_difference*abs(farther - near)), error_if_unknown)
          return
       end if
       uncertainty = error_if_unknown
