@@ -14,7 +14,7 @@ module mfv_edge_solutions
    use mfv_quadrature, only: gauss_points
    implicit none
    private
-   public :: solved_distance, discrete_over_exact, graded_solution_type, new_graded_solution, least_power, most_power
+   public :: find_solved_distance, discrete_over_exact, graded_solution_type, new_graded_solution, least_power, most_power
 
    !> Exponents for which the solutions are tabulated.
    real(wp), parameter :: least_power = 0.29_wp, most_power = 0.71_wp
@@ -34,22 +34,24 @@ module mfv_edge_solutions
 
 contains
 
-   !> Distance of the edge, in intervals outwards from the outermost node, where tractions vanish with the exponent `power`.
+   !> `distance` of the edge, in intervals outwards from the outermost node, where tractions vanish with the exponent `power`.
    !> `values`: tractions at five or more nodes to the inverse exponent, outermost first; `inwards`: their distances from that
    !> node. With the edge g + 2 m r k, to the inverse exponent, fits the second to fourth value (third to fifth with exponents
-   !> below 1/2, where k is irregular) by a parabola without a linear term. Of several such edges the one nearest to `guess`;
-   !> `guess` without any.
-   pure real(wp) function solved_distance(inwards, values, power, guess) result(distance)
-      real(wp), intent(in) :: inwards(0:), values(0:), power, guess
+   !> below 1/2, where k is irregular) by a parabola without a linear term; `otherwise`: the third to fifth (second to fourth). Of
+   !> several such edges the one nearest to `distance` at first, which stays if none is `found`.
+   pure subroutine find_solved_distance(inwards, values, power, otherwise, distance, found)
+      real(wp), intent(in) :: inwards(0:), values(0:), power
+      logical, intent(in) :: otherwise
+      real(wp), intent(inout) :: distance
+      logical, intent(out) :: found
       integer, parameter :: steps = 22, halvings = 40
       real(wp), parameter :: least = -0.6_wp, step = 0.1_wp
-      real(wp) :: left, right, middle, at_left, at_right, offset, g(4), k(4)
-      logical :: found
+      real(wp) :: guess, left, right, middle, at_left, at_right, offset, g(4), k(4)
       integer :: first, i, j
 
       call find_edge_solutions(power, offset, g, k)
-      first = merge(2, 1, power < 0.5_wp)
-      distance = guess
+      first = merge(2, 1, power < 0.5_wp .neqv. otherwise)
+      guess = distance
       found = .false.
       at_right = misfit(least)
       do i = 1, steps
@@ -90,7 +92,7 @@ contains
                      + value(3)*(discrete(1)*square(2) - discrete(2)*square(1))
          end associate
       end function misfit
-   end function solved_distance
+   end subroutine find_solved_distance
 
    !> Offset and the two solutions for j = 1 to 4 for an exponent, interpolated in the table to 1e-5, k to 6e-4. Verified by
    !> tests/python/test_edge_solutions.py.

@@ -9,7 +9,7 @@
 !> the projection preserves the integrals of tractions with smooth functions, on which stresses depend.
 module mfv_surface_tractions
    use mfv_edge_solutions, only: discrete_over_exact, graded_solution_type, least_power, most_power, new_graded_solution, &
-                                 solved_distance
+                                 find_solved_distance
    use mfv_kinds, only: certified, pi, wp
    use mfv_lapack, only: dgesv
    use mfv_quadrature, only: gauss_points
@@ -200,8 +200,9 @@ contains
    !> Contact edges between the nodes, if the discretisation error is known.
    subroutine locate_edges(patch)
       type(patch_type), intent(inout) :: patch
-      real(wp) :: values(size(patch%arc)), inwards(size(patch%arc))
+      real(wp) :: values(size(patch%arc)), inwards(size(patch%arc)), distance
       integer :: nodes(size(patch%arc)), i, n, side
+      logical :: found
 
       n = size(patch%arc)
       do side = 1, 2
@@ -209,8 +210,9 @@ contains
          nodes = [(merge(i, n + 1 - i, side == 1), i=1, n)]
          inwards = abs(patch%arc(nodes) - patch%arc(nodes(1)))/patch%width(nodes(1))
          values = (patch%pressure(nodes)/maxval(patch%pressure))**(1.0_wp/patch%contact%power(side))
-         patch%contact%edge(side) = patch%arc(nodes(1)) + (2*side - 3)*patch%width(nodes(1)) &
-                                    *solved_distance(inwards, values, patch%contact%power(side), 0.5_wp)
+         distance = 0.5_wp
+         call find_solved_distance(inwards, values, patch%contact%power(side), .false., distance, found)
+         patch%contact%edge(side) = patch%arc(nodes(1)) + (2*side - 3)*patch%width(nodes(1))*distance
       end do
    end subroutine locate_edges
 

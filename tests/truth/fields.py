@@ -33,7 +33,7 @@ TIED = {"largest_shear_x", "largest_slip_range_x"}
 ODD = {
     "tangential_force", "shift", "shear", "slip", "moment", "rotation", "tangential_displacement",
     "upper_tangential_displacement", "contact_centre", "contact_centre_reversal", "contact_centre_return",
-    "patch_shift_loading", "patch_shift_reversal", "patch_shift_return", "creepage", "shift_drift", "rotation_drift",
+    "patch_shift_loading", "patch_shift_reversal", "patch_shift_return", "shift_drift", "rotation_drift",
     "lower_tension_x", "upper_tension_x", "contact_edge", "stick_edge",
     "largest_lower_tension_x", "largest_upper_tension_x", "largest_pressure_x",
 }  # fmt: skip

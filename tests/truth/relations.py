@@ -16,6 +16,7 @@ import mfv
 
 from .fields import TOLERANCE, converter, differences, exchanged, mirrored
 from .problem import Keys, Problem
+from .scales import Scales
 
 #: Loads by kind; targets that a step changes linearly.
 FORCES = ("normal_force", "tangential_force")
@@ -195,7 +196,8 @@ def _accuracy_differences(base: mfv.Result, other: mfv.Result, accuracy: float) 
     largest = max(np.max(other.state.pressure), np.max(np.abs(other.state.shear)))
     found = {f"state/{name}": np.max(np.abs(base.state[name] - other.state[name])) / largest for name in ("pressure", "shear")}
     work = float(other.summary.dissipation)
-    found["summary/dissipation"] = abs(float(base.summary.dissipation) - work) / work if work > 0 else 0.0
+    scale = max(work, Scales(other).where_it_vanishes("dissipation"))
+    found["summary/dissipation"] = abs(float(base.summary.dissipation) - work) / scale if scale > 0 else 0.0
     return {path: float(error) for path, error in found.items() if error > max(OVER_ACCURACY * accuracy, TOLERANCE)}
 
 

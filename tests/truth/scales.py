@@ -24,6 +24,7 @@ _TABLE = [
     (r".*(left|right)|contact_centre.*|.*_edge|.*(tension|pressure|von_mises)_[xy]|x|contact_length|slip_zone.*", "half_width"),
     (r".*stick_ratio.*|patch_shift.*|change|loss_factor|creepage_number", "one"),
     (r"dissipation_number", "friction_squared"),
+    (r"shear_number", "friction"),
     (r"tangential_force|force_amplitude", "friction_force"),
     (r"normal_force", "normal_force"),
     (r"moment", "moment"),
@@ -36,11 +37,13 @@ _TABLE = [
     (r"friction_work", "work_per_length"),
     (r"dissipation|.*cycle_dissipation|.*_work", "work"),
     (r"creepage", "creepage"),
+    (r"wear_depth", "approach"),
+    (r"worn_area", "indented"),
 ]  # fmt: skip
 #: Those that are positive where they are not zero: relative to themselves unless negligible.
 _POSITIVE = (
     r"loss_factor|dissipation|dissipation_number|.*cycle_dissipation|peak_pressure|peak_shear|contact_length|"
-    r"force_amplitude|shift_amplitude|friction_work"
+    r"force_amplitude|shift_amplitude|friction_work|wear_depth|worn_area"
 )
 
 
@@ -66,7 +69,7 @@ class Scales:
         self.half_width = 0.5 * (span if span > 0 else length if length > 0 else float(x[-1] - x[0]))
         friction = result.mesh.get("static_friction")
         mu = 0.0 if friction is None else float(np.max(friction))
-        self.friction_squared = mu**2
+        self.friction, self.friction_squared = mu, mu**2
         self.normal_force = max(abs(float(step.normal_force)) for step in steps)
         self.friction_force = max(mu, SLIPPERY) * self.normal_force
         # A matrix has none.
@@ -79,6 +82,7 @@ class Scales:
         self.rotation = self.approach / self.half_width
         self.moment = self.normal_force * self.half_width
         self.contraction = self.shift * self.half_width
+        self.indented = self.approach * self.half_width
         self.work = mu * self.normal_force * self.shift
         self.work_per_length = self.work / self.half_width
         self.creepage = mu * self.half_width * abs(float(result.scene.get("curvature", 0.0)))

@@ -146,8 +146,8 @@ def judge(problem: Problem, base: mfv.Result, truth: Truth) -> dict[str, Verdict
         there = [_aligned(group, base, result, fine.get(path)) for result, fine in ((truth.coarser, coarser), (truth.finer, finer))]
         if there[0] is None or there[1] is None or any(len(other) != len(values) for other in there):
             continue
-        # Of cycles all have the relative bar of the last one.
-        bar = bar_of(base, path, float(values[-1]) if len(values) else math.nan)
+        last = float(values[-1]) if len(values) else math.nan
+        bar = bar_of(base, path, last)
         flagged = bar == math.inf or any(re.fullmatch(pattern, public_name(path)) for pattern in patterns)
         right = limit
         if path in COUNTED:
@@ -155,7 +155,18 @@ def judge(problem: Problem, base: mfv.Result, truth: Truth) -> dict[str, Verdict
         size = np.nanmax(np.abs(there[1]), initial=0.0) if group == "patches" else 0.0
         found[path] = max(
             (
-                _judge_one(value, closed_or(truth, path, one), two, scales.where_it_vanishes(name), size, right, bar, flagged, name)
+                _judge_one(
+                    value,
+                    closed_or(truth, path, one),
+                    two,
+                    scales.where_it_vanishes(name),
+                    size,
+                    right,
+                    # Of cycles all have the relative bar of the last one, at least.
+                    bar * max(1.0, abs(value / last)) if group == "cycles" and abs(last) > 0.0 else bar,
+                    flagged,
+                    name,
+                )
                 for value, one, two in zip(values, *there)
             ),
             key=lambda verdict: (WORDS.index(verdict.word), verdict.error),
@@ -221,14 +232,15 @@ def _judge_one(
 def bar_of(base: mfv.Result, path: str, value: float) -> float:
     """Bar of a quantity with a value: NaN without one; infinite where MFV says that there is no limit or that it is not resolved,
     or why there is no bar at all."""
-    group, name = path.split("/")
-    several = group == "patches" and len(base.patches.patch) > 1
-    if several or path in COUNTED:
-        return math.nan
+    name = path.split("/")[1]
     if str(base.attributes.get("error_estimate", "")).startswith("none"):
         return math.inf
+    if path == "cycles/shift_drift":  # the difference of two shifts
+        return 2.0 * _error_of(base, "shift")
     if re.fullmatch(r"contact_centre_(reversal|return)", name):
         shift = name.replace("contact_centre", "patch_shift")
+        if base.observables.patches > 1:  # without a half-width
+            return bar_of(base, "observables/contact_centre", math.nan)
         return bar_of(base, f"observables/{shift}", math.nan) * 0.5 * float(base.observables.contact_length)
     if re.fullmatch(f"{_POSITION}|{_STICK_POSITION}", name):
         return _bar_of_position(base, name)
@@ -239,8 +251,8 @@ def bar_of(base: mfv.Result, path: str, value: float) -> float:
     for factor in factors:
         error, of = _error_of(base, factor), abs(float(base.observables[factor]))
         if not (math.isnan(error) and factor in PRESCRIBED):
-            relative += error / of if of > 0.0 else 0.0
-    return relative * abs(value)
+            relative += error / of if of > 0.0 else math.inf if error > 0.0 else 0.0
+    return relative * abs(value) if math.isfinite(relative) else relative
 
 
 def _error_of(base: mfv.Result, observable: str) -> float:

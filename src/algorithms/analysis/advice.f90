@@ -369,7 +369,7 @@ contains
       type(zone_edges_type) :: edges
       integer :: nodes
 
-      allowances = allowances_of_behaviours(fine)
+      allowances = allowances_of_behaviours(fine, fine%contact%state)
       call find_zone_edges(fine%contact%model, fine%contact%state, edges)
       nodes = fine%contact%state%contact_nodes()
       associate (half_width => law%squares(advice_half_width), stick_ratio => law%squares(advice_stick_ratio))

@@ -7,21 +7,23 @@ module mfv_discretisation_error
    use mfv_closed_form, only: alike
    use mfv_compliance, only: block_up, block_wt
    use mfv_contact_model, only: contact_model_type
+   use mfv_contact_state, only: contact_state_type
    use mfv_corners, only: corner_type, find_corner
    use mfv_error_bar
    use mfv_friction, only: friction_coefficient_type
    use mfv_kinds, only: pi, wp
-   use mfv_motions, only: control_keep, motion_approach, motion_shift
+   use mfv_motions, only: bulk_motions, control_keep, motion_approach, motion_shift
    use mfv_node_status, only: holds, in_contact
    use mfv_observables
    use mfv_observer, only: observer_type, relay_type
    use mfv_profile_sampling, only: negligible_pressure
    use mfv_resolution, only: add_unresolved, all_quantities, find_unresolved, is_unresolved, undersampling, unresolved_type
    use mfv_scene, only: scene_type
-   use mfv_simulation, only: history_none, new_simulation, simulation_type, states_steps
+   use mfv_simulation, only: history_none, mark_reversal, new_simulation, simulation_type, states_steps
+   use mfv_slip_zones, only: contact_interval, largest_resolved_error, slip_record_type
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
-   use mfv_zone_edges, only: find_patches, largest_shear, patch_type, zones_of
+   use mfv_zone_edges, only: find_patches, largest_shear, patch_type, slipping_run, zones_of
    implicit none
    private
    public :: estimate_error, coarser_scene, scene_on_mesh, fix_cycles, nearest_mesh, allowances_of_behaviours, has_coarser_meshes
@@ -67,11 +69,11 @@ contains
             if (observables(place)%error == error_none .or. ieee_is_nan(values(place, 1))) cycle
             if (is_unresolved(unresolved, trim(observables(place)%name))) then
                estimate%bar(place) = unresolved_bar(values(place, :))
-            else if (is_there(simulation%contact%model, place, values(place, :))) then
+            else if (is_there(simulation%contact%model, place, values(place, :), allowances(place, :))) then
                associate (behaviour => observables(place)%error)
                   estimate%bar(place) = new_error_bar(nodes, values(place, :), allowances(place, :), &
                                                       any(behaviour == [error_edges, error_stick, error_place]), &
-                                                      is_smooth(simulation%contact%model%scene, behaviour), &
+                                                      is_smooth(simulation%contact%model, place), &
                                                       all(behaviour /= [error_pressure, error_shear, error_local]))
                end associate
                if (allocated(simulation%contact%model%scene%mesh%ends)) &
@@ -110,20 +112,28 @@ contains
    end function peak_is_at_corner
 
    !> Whether observables with this behaviour can converge faster than with the first power of the interval: not those of edges, and
-   !> not the peak pressure at a kink of a profile.
-   pure logical function is_smooth(scene, behaviour)
-      type(scene_type), intent(in) :: scene
-      integer, intent(in) :: behaviour
-
-      is_smooth = any(behaviour == [error_load, error_smooth, error_pressure, error_shear])
-      if (behaviour == error_pressure) is_smooth = all([scene%lower%shape, scene%upper%shape] /= shape_profile)
-   end function is_smooth
-
-   !> Whether an observable is modelled, is not prescribed, and is not zero on all meshes.
-   pure logical function is_there(model, place, values)
+   !> not the peak pressure at a kink of a profile, nor largest tractions of states with cusps by full coupling, and nothing under
+   !> friction that weakens or creeps, node by node.
+   pure logical function is_smooth(model, place)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: place
-      real(wp), intent(in) :: values(:)
+
+      associate (scene => model%scene, behaviour => observables(place)%error)
+         is_smooth = any(behaviour == [error_load, error_smooth, error_pressure, error_shear])
+         if (allocated(scene%friction%law)) is_smooth = is_smooth .and. scene%friction%is_proportional()
+         if (behaviour == error_pressure) is_smooth = is_smooth .and. all([scene%lower%shape, scene%upper%shape] /= shape_profile)
+         if (any(behaviour == [error_pressure, error_shear]) .and. index(observables(place)%name, 'largest_') == 1) &
+            is_smooth = is_smooth .and. .not. (model%tangential .and. pressing_shears(model))
+         ! It is that of an edge, mostly.
+         if (observables(place)%name == 'largest_slip_range') is_smooth = .false.
+      end associate
+   end function is_smooth
+
+   !> Whether an observable is modelled, is not prescribed, and is not zero on all meshes and certainly so.
+   pure logical function is_there(model, place, values, allowances)
+      type(contact_model_type), intent(in) :: model
+      integer, intent(in) :: place
+      real(wp), intent(in) :: values(:), allowances(:)
       !> Relative difference of a prescribed load on two meshes.
       real(wp), parameter :: round_off = 1.0e-10_wp
 
@@ -134,6 +144,7 @@ contains
          is_there = maxval(abs(values - values(1))) > round_off*maxval(abs(values))
       case default
          is_there = any(abs(values) > 0.0_wp)
+         if (any(observables(place)%error == [error_smooth, error_place])) is_there = is_there .or. any(allowances > 0.0_wp)
       end select
    end function is_there
 
@@ -372,38 +383,79 @@ contains
    end subroutine average
 
    !> Uncertainty of each observable within an interval, shape (observable_count); of places the interval there. Those of turning
-   !> points are as large as those of the present state. `values`: of the observables.
+   !> points are as large as those of the present state, at the far end of the last cycle at least as those there. `values`: of the
+   !> observables.
    function interval_allowances(simulation, values) result(allowances)
       type(simulation_type), intent(in) :: simulation
       real(wp), intent(in) :: values(:)
       real(wp) :: allowances(observable_count), of_behaviour(0:error_place)
       integer :: i
 
-      of_behaviour = allowances_of_behaviours(simulation)
+      of_behaviour = allowances_of_behaviours(simulation, simulation%contact%state)
       allowances = of_behaviour(observables%error)
+      if (simulation%cycle_count > 0 .and. simulation%marks(mark_reversal)%step > 0) then
+         of_behaviour = allowances_of_behaviours(simulation, simulation%padded(simulation%marks(mark_reversal)))
+         where (index(observables%name, '_reversal') > 0) allowances = max(allowances, of_behaviour(observables%error))
+      end if
       associate (model => simulation%contact%model)
          where (observables%error == error_edges .and. observables%unit == '1') &
             allowances = 2.0_wp*allowances/max(values(observable_place('contact_length')), model%interval())
          where (observables%name == 'contact_length') allowances = 2.0_wp*allowances
+         call add_coarse_slip(simulation%slip, 'dissipation', 1.0_wp)
+         if (simulation%cycle_count > 0) then
+            associate (cycle => simulation%cycles(simulation%cycle_count))
+               call add_coarse_slip(cycle%slip(), 'cycle_dissipation', 1.0_wp)
+               call add_coarse_slip(cycle%first_slip, 'first_cycle_dissipation', 1.0_wp)
+               call add_coarse_slip(cycle%slip(), 'loss_factor', pi*cycle%force_amplitude()*cycle%shift_amplitude())
+            end associate
+         end if
          do i = 1, observable_count
             if (observables(i)%error == error_place .and. .not. ieee_is_nan(values(i))) &
                allowances(i) = model%width(minloc(abs(model%x - values(i)), dim=1))
          end do
       end associate
+
+   contains
+
+      !> The error of a dissipation over `unit` (force) by slip zones of few intervals, or within the outermost one at either end,
+      !> where the slip is at most of the order of mu p times the interval over the contact modulus.
+      subroutine add_coarse_slip(slip, name, unit)
+         type(slip_record_type), intent(in) :: slip
+         character(*), intent(in) :: name
+         real(wp), intent(in) :: unit
+         logical, allocatable :: touching(:)
+         integer :: ends(2)
+         real(wp) :: hidden
+
+         if (ieee_is_nan(values(observable_place(name)))) return
+         associate (allowance => allowances(observable_place(name)), value => abs(values(observable_place(name))), &
+                    model => simulation%contact%model, state => simulation%contact%state)
+            if (name /= 'loss_factor') &
+               allowance = value*min(slip%error_number()*contact_interval(model, state)**2, largest_resolved_error)
+            touching = in_contact(state%status)
+            if (.not. any(touching .and. abs(state%fields%shear) > 0.0_wp)) return
+            ends = [findloc(touching, .true., dim=1), findloc(touching, .true., dim=1, back=.true.)]
+            hidden = sum((model%static_friction(ends)*state%fields%pressure(ends)*model%width(ends))**2) &
+                     /(model%compliance%modulus*unit)
+            ! A larger dissipation is that of nodes.
+            if (hidden > 0.0_wp) allowance = allowance + hidden*min(hidden/max(value, tiny(value)), 1.0_wp)
+         end associate
+      end subroutine add_coarse_slip
    end function interval_allowances
 
-   !> Uncertainty within an interval of observables of each behaviour: that of the edges of contact and stick zones (the half-width,
-   !> the stick ratio), and that of cusps.
-   function allowances_of_behaviours(simulation) result(of_behaviour)
+   !> Uncertainty within an interval of observables of each behaviour in a state: that of the edges of contact and
+   !> stick zones (the half-width, the stick ratio), and that of cusps.
+   function allowances_of_behaviours(simulation, state) result(of_behaviour)
       type(simulation_type), intent(in) :: simulation
+      type(contact_state_type), intent(in) :: state
       real(wp) :: of_behaviour(0:error_place)
       type(patch_type), allocatable :: patches(:)
-      real(wp) :: contact, stick, length, largest, nodal
-      integer :: i
+      real(wp) :: contact, stick, length, largest, nodal, part(2)
+      integer :: i, points
 
-      associate (state => simulation%contact%state, model => simulation%contact%model)
+      associate (model => simulation%contact%model)
          call find_patches(model, state, patches)
-         call widen_uncertainties(model, patches)
+         call widen_uncertainties(model, state, has_receded(simulation, state), patches)
          ! Errors of the two edges of one patch add up; those of several patches are independent.
          contact = sqrt(2.0_wp*sum(patches%left_error**2 + patches%right_error**2))
          stick = model%interval()
@@ -419,8 +471,12 @@ contains
             if (model%compliance%has_block(block_wt)) then
                of_behaviour(error_pressure) = room_at_cusp(state%fields%pressure, holds(state%status))
                ! The pressure at the edge of a stick zone, which limits the shear there, is interpolated across a cusp.
-               if (pressing_shears(model)) of_behaviour(error_shear) = largest - nodal
+               if (pressing_shears(model) .and. largest > nodal) of_behaviour(error_shear) = &
+                  max(largest - nodal, model%scene%friction%static%largest()*of_behaviour(error_pressure))
             end if
+            call undersampling(simulation, .false., part(1), points)
+            call undersampling(simulation, .true., part(2), points)
+            of_behaviour(error_pressure) = max(of_behaviour(error_pressure), maxval(part)*maxval(state%fields%pressure))
             if (.not. largest > nodal) &
                of_behaviour(error_shear) = room_at_kink(abs(state%fields%shear), holds(state%status))
          end if
@@ -428,12 +484,16 @@ contains
    end function allowances_of_behaviours
 
    !> Larger uncertainties of edges where the exponents of the tractions are less certain (docs/verification.md): of contact with
-   !> full coupling, where they depend on the friction, and of stick zones that can have grown.
-   pure subroutine widen_uncertainties(model, patches)
+   !> full coupling, where they depend on the friction, and of stick zones that can have grown. If the contact `has_receded` with
+   !> full coupling, its edge is known to an interval unless the outermost nodes, from which it is found, slip alike.
+   pure subroutine widen_uncertainties(model, state, has_receded, patches)
       type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      logical, intent(in) :: has_receded
       type(patch_type), intent(inout) :: patches(:)
       !> In intervals; the last one where fewer than two nodes slip beside the stick zone.
-      real(wp), parameter :: coupled = 0.02_wp, grown = 0.2_wp, grown_to_end = 0.5_wp
+      real(wp), parameter :: coupled = 0.02_wp, receded = 0.5_wp, grown = 0.2_wp, grown_to_end = 0.5_wp
+      integer, parameter :: fewest_alike = 4
       logical :: can_grow, depends_on_friction
       integer :: i, j
 
@@ -442,9 +502,11 @@ contains
       do i = 1, size(patches)
          associate (patch => patches(i), width => model%width)
             if (depends_on_friction .and. .not. patch%left_ends) &
-               patch%left_error = max(patch%left_error, coupled*width(patch%first))
+               patch%left_error = max(patch%left_error, width(patch%first)*merge(receded, coupled, has_receded .and. &
+                                                                                slipping_run(state, patch%first, 1) < fewest_alike))
             if (depends_on_friction .and. .not. patch%right_ends) &
-               patch%right_error = max(patch%right_error, coupled*width(patch%last))
+               patch%right_error = max(patch%right_error, width(patch%last)*merge(receded, coupled, has_receded .and. &
+                                                                                slipping_run(state, patch%last, -1) < fewest_alike))
             if (.not. can_grow) cycle
             do j = 1, size(patch%stick)
                associate (zone => patch%stick(j))
@@ -456,6 +518,19 @@ contains
          end associate
       end do
    end subroutine widen_uncertainties
+
+   !> Whether the contact was wider than in a state by an interval or more, or the surfaces are stretched: shear tractions at the
+   !> edges are then not those of one slip zone.
+   pure logical function has_receded(simulation, state)
+      type(simulation_type), intent(in) :: simulation
+      type(contact_state_type), intent(in) :: state
+
+      associate (model => simulation%contact%model)
+         has_receded = simulation%slip%half_width > 0.5_wp*(sum(model%width, mask=in_contact(state%status)) + &
+                                                            contact_interval(model, state)) .or. &
+                       any(abs(state%fields%motion(bulk_motions)) > 0.0_wp)
+      end associate
+   end function has_receded
 
    !> Whether stick zones can have grown while friction acted, so that the exponent at their edges is not known: pressing with
    !> coupling or oblique loading.
@@ -510,8 +585,8 @@ contains
       real(wp), intent(in) :: values(:)
       logical, intent(in) :: held(:)
       integer, parameter :: reach = 3
-      real(wp) :: slope(-1:1)
-      integer :: peak, side
+      real(wp) :: slope(-1:1), bend(-2:2)
+      integer :: peak, side, i
 
       room = 0.0_wp
       peak = maxloc(values, dim=1)
@@ -525,6 +600,9 @@ contains
          ! The steep side of a cusp is a root.
          if (all(held(peak - reach:peak + reach))) room = min(4.0_wp*flat, 0.6_wp*steep)
       end associate
+      ! More than the curvature beside it.
+      bend = [(values(peak + i) - 0.5_wp*(values(peak + i - 1) + values(peak + i + 1)), i=-2, 2)]
+      room = max(room, bend(0) - max(min(bend(-2), bend(2)), 0.0_wp))
    end function room_at_kink
 
 end module mfv_discretisation_error

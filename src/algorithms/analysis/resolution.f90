@@ -1,12 +1,13 @@
 !> Which quantities of a simulation its mesh does not resolve, and why: few nodes in contact patches, profiles with more points
 !> than the mesh has nodes, rounded edges, slip zones. Warnings and error bars take it from here.
 module mfv_resolution
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use mfv_body, only: body_type, shape_matrix, shape_profile, shape_rounded_punch
    use mfv_contact_model, only: needs_equal_intervals
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
-   use mfv_motions, only: motion_approach
-   use mfv_node_status, only: in_contact
+   use mfv_motions, only: motion_approach, motion_rotation
+   use mfv_node_status, only: holds, in_contact, slip_sign
    use mfv_observables, only: observable_count, observables
    use mfv_profile_sampling, only: find_missed, negligible_pressure, pressure_of_wave
    use mfv_simulation, only: simulation_type
@@ -43,6 +44,9 @@ contains
          call check_rounded_edges(simulation, .true., unresolved)
       end if
       call check_slip_zones(simulation, unresolved)
+      call check_stick_zones(simulation, unresolved)
+      call check_rolling(simulation, unresolved)
+      call check_worn_shape(simulation, unresolved)
    end subroutine find_unresolved
 
    !> Add a cause: `quantities` (names of observables, separated by blanks), why they are not resolved, and what to do.
@@ -317,7 +321,7 @@ contains
       nodes = resolved_nodes
       width = huge(width)
       interval = contact_interval(simulation%contact%model, simulation%contact%state)
-      call add_work(simulation%slip, 'dissipation')
+      call add_work(simulation%slip, 'dissipation largest_slip_range')
       ! The tension behind a contact grows with the root of its slip zone.
       call add_zones(simulation%slip, 'stick_ratio peak_shear extremes'//tensions(simulation))
       if (.not. simulation%slip%is_coarse_now(interval)) then
@@ -326,7 +330,7 @@ contains
       end if
       if (simulation%cycle_count > 0) then
          associate (cycle => simulation%cycles(simulation%cycle_count))
-            call add_work(cycle%slip(), 'cycle_dissipation loss_factor nonlinear_shift')
+            call add_work(cycle%slip(), 'cycle_dissipation loss_factor nonlinear_shift largest_slip_range')
             call add_work(cycle%first_slip, 'first_cycle_dissipation')
             call add_zones(cycle%loading_slip, 'stick_ratio_loading')
             call add_zones(cycle%reversal%slip, 'stick_ratio_reversal extremes')
@@ -391,5 +395,75 @@ contains
          width = min(width, its_width)
       end subroutine add
    end subroutine check_slip_zones
+
+   !> Zones without a node, which change the number of stick zones: of stick between neighbouring nodes that slip in opposite
+   !> directions, and of slip where sticking nodes are near their friction limit. And stick zones with few nodes between opposite
+   !> slip, in which the shear traction changes its sign: the stress along the surface would have no limit without them.
+   subroutine check_stick_zones(simulation, unresolved)
+      type(simulation_type), intent(in) :: simulation
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
+      !> Part of the friction limit.
+      real(wp), parameter :: near = 0.9_wp
+      real(wp) :: ratio(simulation%contact%model%nodes())
+      type(zone_type), allocatable :: zones(:)
+      character(len=80) :: names
+      integer :: node
+
+      associate (model => simulation%contact%model, state => simulation%contact%state)
+         if (.not. model%tangential .or. .not. allocated(model%scene%friction%law)) return
+         ratio = 0.0_wp
+         where (holds(state%status) .and. state%fields%pressure > 0.0_wp) &
+            ratio = abs(state%fields%shear)/(model%static_friction*state%fields%pressure)
+         do node = 2, model%nodes() - 1
+            ! Where rolling began or turned, the ratio has a maximum that is resolved.
+            if (slip_sign(state%status(node))*slip_sign(state%status(node + 1)) >= 0 .and. .not. &
+                (.not. model%moves(motion_rotation) .and. all(holds(state%status(node - 1:node + 1))) .and. &
+                 ratio(node) > max(near, ratio(node - 1), ratio(node + 1)))) cycle
+            call add_unresolved(unresolved, 'stick_zones', 'near x = '//to_text(model%x(node), 4)//' a stick or slip zone has '// &
+                                'no node', 'use more nodes')
+            exit
+         end do
+         zones = zones_of(holds(state%status))
+         do node = 1, size(zones)
+            associate (first => zones(node)%first, last => zones(node)%last)
+               if (first == 1 .or. last == model%nodes() .or. last - first + 1 >= resolved_nodes) cycle
+               if (slip_sign(state%status(first - 1))*slip_sign(state%status(last + 1)) >= 0) cycle
+               names = tensions(simulation)
+               if (has_interior(model%scene%lower)) names = trim(names)//' largest_lower_tension'
+               if (has_interior(model%scene%upper)) names = trim(names)//' largest_upper_tension'
+               call add_unresolved(unresolved, names(2:), 'near x = '//to_text(model%x(first), 4)//' a stick zone between '// &
+                                   'opposite slip has only '//to_text(last - first + 1)// &
+                                   trim(merge(' node ', ' nodes', first == last)), 'use more nodes')
+               return
+            end associate
+         end do
+      end associate
+   end subroutine check_stick_zones
+
+   !> Creepage, a mean over some intervals, while it changes.
+   subroutine check_rolling(simulation, unresolved)
+      type(simulation_type), intent(in) :: simulation
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
+
+      associate (contact => simulation%contact)
+         if (ieee_is_nan(contact%rolling%creepage()) .or. contact%rolling%is_steady(contact%half_width())) return
+         call add_unresolved(unresolved, 'creepage', 'rolled by less than twice the contact length under constant forces: '// &
+                             'the creepage still changes within the intervals of its mean', 'roll farther')
+      end associate
+   end subroutine check_rolling
+
+   !> Wear mostly by cycles that change the pressures too much: the shape, and with it the tractions, are then as uncertain as it.
+   subroutine check_worn_shape(simulation, unresolved)
+      type(simulation_type), intent(in) :: simulation
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
+      real(wp), parameter :: most = 0.5_wp
+
+      associate (model => simulation%contact%model, state => simulation%contact%state)
+         if (.not. model%scene%wear%acts() .or. simulation%cycle_count == 0) return
+         if (.not. state%coarsely_worn > most*model%force(state%worn)) return
+         call add_unresolved(unresolved, 'peak_pressure peak_shear extremes worn_area wear_depth', 'most of the wear is from '// &
+                             'cycles that each change the pressures by much', 'use a smaller coefficient and more cycles')
+      end associate
+   end subroutine check_worn_shape
 
 end module mfv_resolution

@@ -51,6 +51,7 @@ module mfv_cycle
       type(slip_record_type) :: loading_slip, first_slip
    contains
       procedure :: add_point
+      procedure :: is_farther
       procedure :: slip
       procedure :: dissipation
       procedure :: loop_area
@@ -111,6 +112,16 @@ contains
       self%lowest_motion = min(self%lowest_motion, point%motion)
       self%highest_motion = max(self%highest_motion, point%motion)
    end subroutine add_point
+
+   !> Whether a turning point is farther from the start of the cycle, the return of the one before, than its reversal so far. Of
+   !> points that are equally far, but for round-off, the first counts.
+   elemental logical function is_farther(self, point)
+      class(cycle_type), intent(in) :: self
+      type(turning_point_type), intent(in) :: point
+      real(wp), parameter :: round_off = 1.0e-9_wp
+
+      is_farther = point%distance(self%return) > (1.0_wp + round_off)*self%reversal%distance(self%return)
+   end function is_farther
 
    !> Work of the force of a motion over the cycle, per unit thickness: force. It is the area of the loop of force and motion; an
    !> open loop is closed by a straight line. NaN if large increments do not know it to the accuracy.

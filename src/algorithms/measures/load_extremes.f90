@@ -269,6 +269,7 @@ contains
       do i = 1, size(patches)
          associate (patch => patches(i))
             is_sample(patch%first:patch%last:max(1, (patch%last - patch%first)/most_between)) = .true.
+            is_sample([patch%first, min(patch%first + 1, patch%last), max(patch%last - 1, patch%first), patch%last]) = .true.
             do j = 1, size(patch%stick)
                is_sample([patch%stick(j)%first, patch%stick(j)%last]) = .true.
             end do

@@ -16,7 +16,7 @@ module mfv_zone_edges
    use mfv_compliance, only: block_wp, block_wt
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
-   use mfv_edge_solutions, only: graded_solution_type, least_power, most_power, new_graded_solution, solved_distance
+   use mfv_edge_solutions, only: graded_solution_type, least_power, most_power, new_graded_solution, find_solved_distance
    use mfv_kinds, only: certified, pi, wp
    use mfv_motions, only: motion_shift
    use mfv_node_status, only: holds, in_contact, slip_sign, slips
@@ -24,7 +24,7 @@ module mfv_zone_edges
    implicit none
    private
    public :: zone_type, patch_type, zone_edges_type, find_patches, find_zone_edges, outermost_edges, largest_shear, &
-             zones_of, ends_with_body
+             zones_of, ends_with_body, slipping_run
 
    !> A zone of neighbouring nodes, from `first` to `last`, and its edges: arc lengths from the origin of x, positive to the
    !> right; and the uncertainty of these edges, lengths.
@@ -380,8 +380,14 @@ contains
       samples = sampled(model, lack, last, other)
       if (.not. model%compliance%elastic_block(block_wt)) samples%is_regular = has_known_error(model, last, samples%number)
       edge = model%arc(last) + side*model%width(last)*distance_of_lack(samples, power)
-      if (widest < huge(widest)) edge = side*max(side*edge, side*merge(patch%right, patch%left, side > 0) - widest)
       error = max(least, model%width(last)*max(uncertainty(straightened(samples, power)), least_stick_error))
+      if (last == patch_end) then
+         associate (end => merge(patch%right, patch%left, side > 0))
+            edge = side*max(side*edge, side*end - widest)
+            ! The width of a slip zone without a node is no better known than itself.
+            error = max(error, min(abs(end - edge), error_if_unknown*model%width(last)))
+         end associate
+      end if
       call correct_by_slip(edge, error)
 
    contains
@@ -618,7 +624,7 @@ contains
       if (samples%is_integral) then
          call find_graded_distance(samples, distance, found)
       else
-         distance = solved_distance(samples%inwards, samples%value, samples%power, distance)
+         call find_solved_distance(samples%inwards, samples%value, samples%power, .false., distance, found)
       end if
    end function refined_distance
 
@@ -635,18 +641,33 @@ contains
       if (found) distance = beyond + 0.5_wp
    end subroutine find_graded_distance
 
-   !> Uncertainty of the zero of nearly linear values, intervals: small with a known discretisation error, otherwise the
-   !> distance of the zeros by near and by farther values.
+   !> Uncertainty of the zero of nearly linear values, intervals: the distance of the zeros by nearer and by farther values, which
+   !> is small with a known discretisation error, unless the edge is near another one or a corner.
    pure real(wp) function uncertainty(samples)
       type(samples_type), intent(in) :: samples
       !> By the largest of unequal intervals: their discretisation error moves the edge (docs/verification.md).
       real(wp), parameter :: by_largest = 0.005_wp
+      !> Beyond it the next node would be in contact: the traction does not vanish as a root.
+      real(wp), parameter :: farthest = 1.35_wp
+      !> The error of the fit through the second to fourth node over the difference from that of the third to fifth, whose error is
+      !> 2.7 times as large: errors are in proportion to the product of the distances.
+      real(wp), parameter :: of_difference = 0.6_wp
       real(wp) :: near, farther
       logical :: found(2)
 
       uncertainty = least_error
       if (samples%is_integral) uncertainty = uncertainty + by_largest*maxval(samples%width)**2/sum(samples%width)
-      if (samples%is_regular) return
+      if (samples%is_regular) then
+         if (samples%is_integral) return
+         near = distance_to_zero(samples, .false.)
+         call find_solved_distance(samples%inwards, samples%value, samples%power, .false., near, found(1))
+         farther = near
+         call find_solved_distance(samples%inwards, samples%value, samples%power, .true., farther, found(2))
+         uncertainty = error_if_unknown
+         if (all(found) .and. near < farthest) &
+            uncertainty = min(max(least_error, of_difference*abs(farther - near)), error_if_unknown)
+         return
+      end if
       uncertainty = error_if_unknown
       if (samples%number < most_samples) return
       call find_zero_of_three(samples%inwards(1:3), samples%value(1:3), near, found(1))

@@ -800,7 +800,7 @@ contains
       call cycle%add_point(point, is_first=mod(leg, turns) == 1)
       if (mod(leg, turns) /= 0) then
          is_farthest = mod(leg, turns) == 1
-         if (.not. is_farthest) is_farthest = point%distance(cycle%return) > cycle%reversal%distance(cycle%return)
+         if (.not. is_farthest) is_farthest = cycle%is_farther(point)
          if (.not. is_farthest) return
          cycle%reversal = point
          call set_mark(self, mark_pending, leg)
