@@ -3,7 +3,7 @@ module mfv_cycle
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
-   use mfv_kinds, only: pi, wp
+   use mfv_kinds, only: certified, pi, wp
    use mfv_load_extremes, only: load_extremes_type
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift
    use mfv_slip_zones, only: slip_record_type
@@ -137,12 +137,13 @@ contains
       end associate
    end function loop_area
 
-   !> Change of a motion over the cycle, in its unit.
+   !> Change of a motion over the cycle, in its unit; 0 if the cycle returns to the motion within the certified accuracy.
    elemental real(wp) function drift(self, motion)
       class(cycle_type), intent(in) :: self
       integer, intent(in) :: motion
 
       drift = self%return%motion(motion) - self%start%motion(motion)
+      if (abs(drift) <= certified*(self%highest_motion(motion) - self%lowest_motion(motion))) drift = 0.0_wp
    end function drift
 
    !> Whether the upper body walks: its shift has changed over the cycle although the tractions repeat, and will go on changing.
