@@ -10,23 +10,23 @@ results, `animate` and `report` make animations and web pages, `compare` and `co
 from __future__ import annotations
 
 import importlib
-from importlib.metadata import version as _installed_version
 from pathlib import Path as _Path
-from types import ModuleType
+from typing import TYPE_CHECKING, Any
 
 from ._packages import check_required
 
-check_required()
+if TYPE_CHECKING:
+    from . import errors, reference, stress
+    from ._library import has_feature, library_version
+    from .case import Case, State, Trial, run
+    from .codes import EventKind, NodeStatus
+    from .errors import LibraryNotFound, MfvError, NotAResult
+    from .loads import Derivative, Loads, Progress
+    from .result import Group, Result, read
+    from .scene import Body, Friction, History, Mesh, Output, Scene, Solver, Step, Wear
+    from .studies import Axis, Study, study
 
-from . import errors, reference, stress
-from ._library import has_feature, library_version
-from .case import Case, State, Trial, run
-from .codes import EventKind, NodeStatus
-from .errors import LibraryNotFound, MfvError, NotAResult
-from .loads import Derivative, Loads, Progress
-from .result import Group, Result, read
-from .scene import Body, Friction, History, Mesh, Output, Scene, Solver, Step, Wear
-from .studies import Axis, Study, study
+check_required()
 
 __all__ = [
     "Axis",
@@ -64,11 +64,20 @@ __all__ = [
     "study",
 ]
 
-_version_file = _Path(__file__).resolve().parents[2] / "VERSION"
-__version__ = _version_file.read_text().strip() if _version_file.is_file() else _installed_version("mfv-contact")
+#: Where the names are. Each module is loaded when one of its names is first used: none has to wait for what it does not need.
+_MODULES = {
+    "_library": ("has_feature", "library_version"),
+    "case": ("Case", "State", "Trial", "run"),
+    "codes": ("EventKind", "NodeStatus"),
+    "errors": ("LibraryNotFound", "MfvError", "NotAResult"),
+    "loads": ("Derivative", "Loads", "Progress"),
+    "result": ("Group", "Result", "read"),
+    "scene": ("Body", "Friction", "History", "Mesh", "Output", "Scene", "Solver", "Step", "Wear"),
+    "studies": ("Axis", "Study", "study"),
+}
+_HOMES = {name: module for module, names in _MODULES.items() for name in names}
 
-
-#: Modules that are loaded on first use, so that matplotlib is loaded for drawing only.
+#: Modules that are attributes of the package, besides these.
 _ON_FIRST_USE = (
     "animate",
     "compare",
@@ -78,16 +87,36 @@ _ON_FIRST_USE = (
     "joint",
     "load_history",
     "plot",
+    "profiles",
+    "reference",
     "report",
+    "stress",
     "template",
 )
 
 
-def __getattr__(name: str) -> ModuleType:
-    if name in _ON_FIRST_USE:
-        return importlib.import_module(f".{name}", __name__)
-    raise AttributeError(f"module 'mfv' has no attribute '{name}'")
+def __getattr__(name: str) -> Any:
+    if name in _HOMES:
+        value = getattr(importlib.import_module(f".{_HOMES[name]}", __name__), name)
+    elif name in _ON_FIRST_USE or name in _MODULES:
+        value = importlib.import_module(f".{name}", __name__)
+    elif name == "__version__":
+        value = _version()
+    else:
+        raise AttributeError(f"module 'mfv' has no attribute '{name}'")
+    globals()[name] = value
+    return value
+
+
+def _version() -> str:
+    """The version of the source tree, or of the installed package."""
+    file = _Path(__file__).resolve().parents[2] / "VERSION"
+    if file.is_file():
+        return file.read_text().strip()
+    from importlib.metadata import version  # here: it takes as long as half of numpy
+
+    return version("mfv-contact")
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_ON_FIRST_USE})
+    return sorted({*globals(), *_ON_FIRST_USE, *_MODULES, *_HOMES, "__version__"})

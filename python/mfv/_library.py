@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import ctypes.util
 import functools
 import itertools
 import os
@@ -182,7 +181,11 @@ def find_library() -> str:
         if not Path(asked_for).is_file():
             raise LibraryNotFound(None, f"MFV_LIBRARY={asked_for}: no such file; set it to the path of libmfv.so")
         return str(Path(asked_for).resolve())
-    found = next((str(path) for path in _usual_places() if path.is_file()), None) or ctypes.util.find_library("mfv")
+    found = next((str(path) for path in _usual_places() if path.is_file()), None)
+    if found is None:
+        from ctypes.util import find_library
+
+        found = find_library("mfv")
     if not found:
         raise LibraryNotFound(None, f"the MFV library was not found; {HOW_TO_BUILD}")
     return found

@@ -8,8 +8,6 @@ import re
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-import f90nml
-
 if TYPE_CHECKING:
     from .case import Case
     from .result import Result
@@ -35,6 +33,8 @@ def keys(text: str) -> dict[str, Any]:
 
 def groups(text: str) -> list[tuple[str, dict[str, Any]]]:
     """Name, keys and values of every group of a namelist text, groups of one name in their order. Raises ValueError."""
+    import f90nml
+
     try:
         namelist = f90nml.reads(text)
     except Exception as error:  # f90nml raises exceptions of many types
@@ -80,6 +80,8 @@ def case_of(result: Result, *, keeping_states: bool = False) -> Case:
 
 def _with_all_states(text: str) -> str:
     """A namelist text whose run saves the states of all turning points."""
+    import f90nml
+
     namelist = f90nml.reads(text)
     namelist.setdefault("output", f90nml.Namelist())["states"] = "reversals"
     return str(namelist)

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Callable, ClassVar, Literal, TypedDict, T
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _html, errors, profiles, tables
+from . import _html, errors
 from ._library import LARGEST_INTEGER, library, real_pointer, text_buffer, text_for, text_of, whole_text
 from ._suggestions import suggestion
 from .inputs import groups
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from typing_extensions import Self, Unpack
     from typing_extensions import dataclass_transform as _dataclass_transform
 
+    from . import profiles
     from .case import Case
     from .result import Result
 else:
@@ -148,8 +149,10 @@ class OfProfile(Elastic, total=False):
     centred: bool | None
 
 
-class OfMeasuredProfile(OfProfile, profiles.Reading, total=False):
-    """Those of a profile in a file, too."""
+if TYPE_CHECKING:
+
+    class OfMeasuredProfile(OfProfile, profiles.Reading, total=False):
+        """Those of a profile in a file, too."""
 
 
 @_keywords_only
@@ -234,6 +237,8 @@ class Body(KeyGroup):
             return cls(shape="profile", data={"x": _numbers(x, "x"), "height": _numbers(height, "height")}, **keys)
         if height is not None:
             raise TypeError("Body.profile takes the name of a file, or x and height, not both")
+        from . import profiles
+
         options = {name: keys.pop(name) for name in profiles.Reading.__annotations__ if name in keys}
         return cls(shape="profile", data=_measured(x, **options), **keys)
 
@@ -522,6 +527,8 @@ class Scene(KeyGroup):
         """The points of a profile whose file is not a text, in `length_unit`; None for others. Raises InputError."""
         if body.shape != "profile" or body.file is None:
             return None
+        from . import tables
+
         path = os.path.join(os.path.dirname(os.fspath(self.name)), os.fspath(body.file))
         if not os.path.isfile(path) or tables.is_text(path):
             return None
@@ -601,6 +608,8 @@ def _numbers(values: ArrayLike, name: str = "an array") -> NDArray[np.float64]:
 
 def _measured(path: str | os.PathLike[str], **options: Any) -> Data:
     """The points of the profile in a file, see `mfv.profiles.read`; its notes are warnings of Python."""
+    from . import profiles
+
     profile = profiles.read(path, **options)
     for note in profile.notes:
         warnings.warn(note, stacklevel=3)
