@@ -223,7 +223,7 @@ contains
 
    !> Largest size of the shear traction in a patch, force/length^2: at its nodes, and at the edges of stick zones between nodes,
    !> beyond which it is mu p. At nodes alone it would be too small by the root of the interval (Mindlin 1949: the remaining
-   !> friction inside the edge). `arc`: where it is.
+   !> friction inside the edge). `arc`: where it is; the leftmost of places that differ by less than the certified accuracy.
    real(wp) function largest_shear(model, state, patch, arc) result(largest)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
@@ -231,7 +231,9 @@ contains
       real(wp), intent(out), optional :: arc
       integer :: i
 
-      i = patch%first - 1 + maxloc(abs(state%fields%shear(patch%first:patch%last)), dim=1)
+      associate (shear => abs(state%fields%shear(patch%first:patch%last)))
+         i = patch%first - 1 + findloc(shear >= maxval(shear)*(1.0_wp - certified), .true., dim=1)
+      end associate
       largest = abs(state%fields%shear(i))
       if (present(arc)) arc = model%arc(i)
       if (.not. model%scene%friction%is_coulomb()) return
@@ -253,7 +255,7 @@ contains
             if (.not. slips(state%status(next))) return
             part = min(max((edge - model%arc(outermost))/(model%arc(next) - model%arc(outermost)), 0.0_wp), 1.0_wp)
             limit = model%kinetic_friction(next)*(pressure(outermost) + part*(pressure(next) - pressure(outermost)))
-            if (.not. limit > largest) return
+            if (.not. limit > largest*(1.0_wp + certified)) return
             largest = limit
             if (present(arc)) arc = edge
          end associate

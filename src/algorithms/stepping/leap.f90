@@ -35,8 +35,8 @@ module mfv_leap
 
    !> An interval shorter than this fraction of a segment is not divided where no statuses are found.
    real(wp), parameter :: shortest = 0.2_wp
-   !> Most increments of an interval; those of an exact one, for the history: one for so many nodes in contact, which cost less than
-   !> the events of these.
+   !> Most increments of an interval; those of an exact one, for the history: one for a number of nodes in contact whose events cost
+   !> more.
    integer, parameter :: most_increments = 64, most_recorded = 8, nodes_a_record = 32
    !> Linear solves of event stepping per change of status. Less than one, since event stepping can update the inverse from solve
    !> to solve, and a large increment cannot.
