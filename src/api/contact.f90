@@ -630,6 +630,7 @@ contains
       integer :: i, j
 
       if (.not. allocated(self%paths)) then
+         call find_observables(self)
          groups = result_groups(self%simulation)
          do i = 1, size(groups)
             call group_fields(self%case, self%simulation, groups(i)%text, fields, self%observed)
@@ -661,6 +662,7 @@ contains
          is_cached = allocated(self%group)
          if (is_cached) is_cached = self%group == path(:slash - 1)
          if (.not. is_cached) then
+            if (path(:slash - 1) == 'observables') call find_observables(self)
             call group_fields(self%case, self%simulation, path(:slash - 1), self%fields, self%observed)
             self%group = path(:slash - 1)
          end if
@@ -762,10 +764,17 @@ contains
       class(contact_type), intent(inout) :: self
 
       call find_warnings(self)
+      call find_observables(self)
+   end subroutine find_results
+
+   !> Find the observables, if they are not cached.
+   subroutine find_observables(self)
+      class(contact_type), intent(inout) :: self
+
       if (allocated(self%observed)) return
       allocate (self%observed(observable_count))
       call observables_of(self%simulation, self%observed)
-   end subroutine find_results
+   end subroutine find_observables
 
    !> A body (body_lower, body_upper) under the tractions of the state steps/000N, N = `step`, or of the present state (0, the
    !> default): for interior%all_stresses(x, y), largest_von_mises, largest_tension; see mfv_interior. Error MFV_BAD_ARGUMENT: a

@@ -77,18 +77,19 @@ contains
       type(element_tree_type), intent(inout) :: self
       integer, intent(in) :: group
       complex(wp), intent(in) :: ends(:, :), place(:, :), sigma(:, :), weight(:, :)
-      complex(wp) :: terms(size(place, 1), size(place, 2)), shear(size(place, 1), size(place, 2))
+      complex(wp), dimension(size(place, 1), size(place, 2)) :: terms, shear, ratio
       integer :: k
 
       self%middle(group) = 0.5_wp*(ends(1, 1) + ends(2, size(ends, 2)))
       self%radius(group) = max(maxval(abs(ends - self%middle(group))), tiny(1.0_wp))
+      ratio = (place - self%middle(group))/self%radius(group)
       terms = sigma*weight
       shear = aimag(sigma)*weight
       do k = 0, most_moments
          self%moments(k, group) = sum(terms)
          self%shear_moments(k, group) = sum(shear)
-         terms = terms*((place - self%middle(group))/self%radius(group))
-         shear = shear*((place - self%middle(group))/self%radius(group))
+         terms = terms*ratio
+         shear = shear*ratio
       end do
    end subroutine add_leaf
 
