@@ -205,7 +205,7 @@ def test_error_estimate_in_summary_and_file(tmp_path):
         }
         assert quantities == {
             *names, "contact_length", "contact_centre", "approach", "shift", "lower_tension_x", "largest_lower_tension",
-            "largest_lower_tension_x", "largest_pressure", "largest_shear", "largest_shear_x", "smallest_stick_ratio",
+            "largest_lower_tension_x", "largest_pressure", "largest_pressure_x", "largest_shear", "largest_shear_x", "smallest_stick_ratio",
             "largest_stick_ratio", "largest_slip_range", "largest_slip_range_x",
         }  # fmt: skip
         for name, dataset in estimate.items():
