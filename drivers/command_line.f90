@@ -91,6 +91,7 @@ contains
       call find_options(help, names)
       call find_nearest_name(option(max(verify(option, '-'), 1):), names, nearest)
       if (nearest /= '') nearest = '; did you mean --'//nearest//'?'
+      if (option == '-o') nearest = "; name the result in the case: &output file='NAME.h5'"
       call refuse(program, usage, "unknown option '"//shortened(option)//"'"//nearest)
    end subroutine refuse_option
 

@@ -98,7 +98,7 @@ contains
       real(wp), parameter :: largest_strain = 0.07_wp, largest_approach = 0.1_wp
       character(*), parameter :: consequence = ': the theory of small strains and displacements does not hold; tractions, '// &
                                  'contact_length, approach, shift, stiffnesses, dissipation and stresses are off '// &
-                                 'by at least that much'
+                                 'by at least that much; check the units of radius, moduli and forces'
       real(wp) :: strain, approach
 
       associate (state => simulation%contact%state, model => simulation%contact%model)

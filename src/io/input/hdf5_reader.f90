@@ -49,7 +49,14 @@ contains
          call h5fis_hdf5_f(path, is_hdf5, code)
       end if
       if (.not. is_hdf5) then
-         call set_error(error, MFV_INPUT_ERROR, path//trim(merge(' is not an HDF5 file', ': no such file      ', is_there)))
+         if (.not. is_there) then
+            call set_error(error, MFV_INPUT_ERROR, path//': no such file')
+         else if (index(path, '.nml', back=.true.) > max(len(path) - 4, 0)) then
+            call set_error(error, MFV_INPUT_ERROR, path//" is a case, not a result; solve it first with 'mfv run', "// &
+                           'which writes the result')
+         else
+            call set_error(error, MFV_INPUT_ERROR, path//' is not an HDF5 file')
+         end if
          return
       end if
       call h5fopen_f(path, H5F_ACC_RDONLY_F, file, code)

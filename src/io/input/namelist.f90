@@ -75,6 +75,7 @@ contains
          if (cursor%at > len(cursor%text)) exit
          if (next(cursor) /= '&') then
             why = "'"//rest_of_line(cursor)//"' is outside a group; a group begins with &name"
+            if (next(cursor) == '#') why = why//', a comment with !'
             if (ended_in_line == cursor%line) why = why//', and the / before it ended &'//groups(n)%name// &
                                                     ' (write numbers without units, texts with / between quotes)'
             call complain(cursor, why, error)
