@@ -118,7 +118,12 @@ def test_modules_are_there_by_name_and_loaded_on_first_use() -> None:
     names = {"animate", "compare", "comparison_figure", "load_history", "plot", "report", "template"}
     script = f"""
 import sys, mfv
-assert "matplotlib" not in sys.modules and {names!r} <= set(dir(mfv))
+loaded = {{"numpy", "matplotlib", "h5py", "f90nml", "mfv.scene", "importlib.metadata"}} & set(sys.modules)
+assert not loaded and {names!r} <= set(dir(mfv)), loaded
+mfv.Scene, mfv.Case
+loaded = {{"matplotlib", "h5py", "f90nml", "mfv.studies", "mfv.profiles"}} & set(sys.modules)
+assert not loaded, loaded
+assert set(mfv.__all__) <= set(dir(mfv)) and all(hasattr(mfv, name) for name in mfv.__all__)
 assert all(getattr(mfv, name).__name__ == f"mfv.{{name}}" for name in {sorted(names)!r})
 """
     environment = {**os.environ, "PYTHONPATH": str(Path(mfv.__file__).parents[1])}
