@@ -382,9 +382,9 @@ contains
       coefficient%value = means
    end subroutine average
 
-   !> Uncertainty of each observable within an interval, shape (observable_count); of places the interval there. Those of turning
-   !> points are as large as those of the present state, at the far end of the last cycle at least as those there. `values`: of the
-   !> observables.
+   !> Uncertainty of each observable within an interval and by large increments, shape (observable_count); of places the interval
+   !> there. Those of turning points are as large as those of the present state, at the far end of the last cycle at least as those
+   !> there. `values`: of the observables.
    function interval_allowances(simulation, values) result(allowances)
       type(simulation_type), intent(in) :: simulation
       real(wp), intent(in) :: values(:)
@@ -413,6 +413,13 @@ contains
             if (observables(i)%error == error_place .and. .not. ieee_is_nan(values(i))) &
                allowances(i) = model%width(minloc(abs(model%x - values(i)), dim=1))
          end do
+      end associate
+      ! Errors of large increments.
+      associate (certificate => simulation%contact%certificate)
+         where (index(observables%name, 'dissipation') > 0 .or. observables%name == 'loss_factor') &
+            allowances = allowances + certificate%increment_dissipation_error*abs(values)
+         where (observables%error == error_pressure .or. observables%error == error_shear .or. observables%error == error_local) &
+            allowances = allowances + certificate%increment_traction_error*certificate%traction_scale
       end associate
 
    contains
