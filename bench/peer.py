@@ -29,7 +29,7 @@ FORCE = math.pi / 4.0
 SHARE, MU, SLIDING_MU, CYCLE_SHARE = 0.65, 0.7, 0.3, 0.8
 SHEAR = SHARE * MU * FORCE
 #: Processes are run in turn: the least of this many rounds, of fewer if they take longer than these seconds; one that does, once.
-ROUNDS, SPENT = 20, 6.0
+ROUNDS, SPENT = 20, 4.0
 #: Rough surface: number of cosines, wave numbers, amplitude of the wave number 40 (others in proportion to the wave length).
 WAVES, WAVE_NUMBERS, AMPLITUDE = 40, (20.0, 160.0), 6.8e-3
 #: Settings of the picture, with the keys of &solver and the numbers of nodes; the finest mesh, which is the reference.
