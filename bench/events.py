@@ -30,18 +30,21 @@ FAMILIES = {
     "decoupled": {"coupling": "none"},
 }
 
+#: Large increments are the default from 384 nodes on.
+BY_EVENTS = {"stepping": "event"}
+
 
 def cycles(contact: int, number_of: int = 1, coupling: str = "full") -> Case:
     """Press with friction, shear cycles, by events; `contact` nodes in contact, about."""
     steps = [{"normal_force": PRESS}, {"tangential_force": SHEAR, "cycles": number_of}]
-    return Case(BODIES, steps, {"nodes": round(1.2 * contact)}, MU, coupling)
+    return Case(BODIES, steps, {"nodes": round(1.2 * contact)}, MU, coupling, BY_EVENTS)
 
 
 def little(contact: int, events: int, coupling: str = "full") -> Case:
     """Press without friction in one step, and shear until about this many nodes slip."""
     share = min(1.0 - (1.0 - events / contact) ** 2, SHEAR / (MU * PRESS)) if events < contact else SHEAR / (MU * PRESS)
     steps = [{"normal_force": PRESS, "friction": False}, {"tangential_force": share * MU * PRESS}]
-    return Case(BODIES, steps, {"nodes": round(1.2 * contact)}, MU, coupling)
+    return Case(BODIES, steps, {"nodes": round(1.2 * contact)}, MU, coupling, BY_EVENTS)
 
 
 def measure(bench: Bench, quick: bool) -> dict[str, Any]:
@@ -196,13 +199,21 @@ def family_text(data: dict[str, Any]) -> str:
                 ]
             )
     head = ["coupling", "nodes in contact", "iterations of fft", "fft, per event", "reduced, per event", "reduced/fft"]
-    return f"""`auto` uses reduced up to {_most("coupled")} nodes of the mesh and fft beyond (events, full coupling); up to {_most("one_way")} with Goodman's coupling, {_most("apart")} without
-coupling, {_most("at_once")} without events (no friction, large increments without coupling), {_most("bristles")} under Dahl's law and for large increments with coupling. A matrix body always
-uses reduced.
+    return f"""`auto` uses reduced up to these numbers of nodes in contact, and fft beyond (`solver_costs.f90`; a test compares). A matrix body always uses reduced.
+
+{table(["", "full coupling", "Goodman", "none"], [[name, *map(_most, columns)] for name, columns in LIMITS.items()])}
 
 Reduced against fft on the same short history (about {EVENTS["fft"]} nodes begin to slip), including the factorisation:
 
 {table(head, rows)}"""
+
+
+#: Crossovers in the library: full coupling, Goodman's, none.
+LIMITS = {
+    "events": ("coupled", "one_way", "apart"),
+    "large increments, no friction": ("at_once_coupled", "at_once", "at_once"),
+    "Dahl's law": ("bristles_coupled", "bristles", "bristles"),
+}
 
 
 def _most(structure: str) -> int:
