@@ -84,6 +84,15 @@ contains
       self%radius(group) = max(maxval(abs(ends - self%middle(group))), tiny(1.0_wp))
       ratio = (place - self%middle(group))/self%radius(group)
       terms = sigma*weight
+      if (.not. any(abs(aimag(ratio)) > 0.0_wp)) then
+         ! Along a straight surface shear moments are the imaginary parts.
+         do k = 0, most_moments
+            self%moments(k, group) = sum(terms)
+            terms = terms*real(ratio, wp)
+         end do
+         self%shear_moments(:, group) = aimag(self%moments(:, group))
+         return
+      end if
       shear = aimag(sigma)*weight
       do k = 0, most_moments
          self%moments(k, group) = sum(terms)
@@ -99,6 +108,7 @@ contains
       integer, intent(in) :: group
       real(wp) :: radius
       complex(wp) :: middle
+      logical :: straight
       integer :: half
 
       associate (halves => [self%halves(group), self%halves(group) + 1])
@@ -106,15 +116,17 @@ contains
          radius = maxval(abs(self%middle(halves) - middle) + self%radius(halves))
          self%moments(:, group) = 0.0_wp
          self%shear_moments(:, group) = 0.0_wp
+         straight = .not. any(abs(aimag(self%middle(halves))) > 0.0_wp)
          do half = 1, 2
             associate (part => halves(half))
                associate (shrink => self%radius(part)/radius, shift => (self%middle(part) - middle)/radius)
                   self%moments(:, group) = self%moments(:, group) + about_other(self%moments(:, part), shrink, shift)
-                  self%shear_moments(:, group) = self%shear_moments(:, group) &
-                                                 + about_other(self%shear_moments(:, part), shrink, shift)
+                  if (.not. straight) self%shear_moments(:, group) = self%shear_moments(:, group) &
+                                                                     + about_other(self%shear_moments(:, part), shrink, shift)
                end associate
             end associate
          end do
+         if (straight) self%shear_moments(:, group) = aimag(self%moments(:, group))
       end associate
       self%middle(group) = middle
       self%radius(group) = radius
@@ -129,6 +141,14 @@ contains
 
       shifted = [(moments(k)*shrink**k, k=0, most_moments)]
       ! Binomial sums, in place.
+      if (.not. abs(aimag(shift)) > 0.0_wp) then
+         do i = 1, most_moments
+            do k = most_moments, i, -1
+               shifted(k) = shifted(k) + real(shift, wp)*shifted(k - 1)
+            end do
+         end do
+         return
+      end if
       do i = 1, most_moments
          do k = most_moments, i, -1
             shifted(k) = shifted(k) + shift*shifted(k - 1)
