@@ -164,10 +164,12 @@ contains
       real(wp), intent(out) :: values(observable_count)
       type(contact_state_type) :: state
       type(zone_edges_type) :: loading
+      type(load_extremes_type) :: extremes
 
       values = ieee_value(1.0_wp, ieee_quiet_nan)
-      call add_present(simulation, values)
-      call add_extremes(simulation, values)
+      call simulation%find_extremes(extremes)
+      call add_present(simulation, extremes, values)
+      call add_extremes(extremes, values)
       if (simulation%marks(mark_loading)%step == 0) return
       state = simulation%padded(simulation%marks(mark_loading))
       call find_zone_edges(simulation%contact%model, state, loading)
@@ -179,9 +181,10 @@ contains
       end associate
    end subroutine observables_of
 
-   !> Observables of the present state.
-   subroutine add_present(simulation, values)
+   !> Observables of the present state. `extremes`: of the load history, which may be those of this state.
+   subroutine add_present(simulation, extremes, values)
       type(simulation_type), intent(in) :: simulation
+      type(load_extremes_type), intent(in) :: extremes
       real(wp), intent(inout) :: values(:)
       type(zone_edges_type) :: edges
       type(patch_type), allocatable :: patches(:)
@@ -209,8 +212,8 @@ contains
          end do
          call put(values, 'peak_shear', shear)
          call put(values, 'half_width_number', edges%half_width()*model%scene%curvature())
-         call add_tension(simulation, .false., 'lower', values)
-         call add_tension(simulation, .true., 'upper', values)
+         call add_tension(simulation, extremes, .false., 'lower', values)
+         call add_tension(simulation, extremes, .true., 'upper', values)
          if (model%scene%wear%acts()) then
             call put(values, 'worn_area', model%force(state%worn))
             call put(values, 'wear_depth', maxval(state%worn))
@@ -227,29 +230,33 @@ contains
    end subroutine add_present
 
    !> The largest tension along the surface of a body; NaN for a rigid body or a matrix, and if singular.
-   subroutine add_tension(simulation, upper, name, values)
+   subroutine add_tension(simulation, extremes, upper, name, values)
       type(simulation_type), intent(in) :: simulation
+      type(load_extremes_type), intent(in) :: extremes
       logical, intent(in) :: upper
       character(*), intent(in) :: name
       real(wp), intent(inout) :: values(:)
       type(largest_type) :: largest
       logical :: available
 
-      call find_largest_tension(simulation%contact%model, simulation%contact%state, upper, largest, available)
+      associate (known => extremes%searched(candidate_tension(merge(2, 1, upper))))
+         available = extremes%is_of(known, simulation%contact%state)
+         if (available) largest = largest_type(known%value, known%x)
+      end associate
+      if (.not. available) &
+         call find_largest_tension(simulation%contact%model, simulation%contact%state, upper, largest, available)
       if (.not. available) return
       call put(values, name//'_tension', largest%value)
       call put(values, name//'_tension_x', largest%x)
    end subroutine add_tension
 
    !> Extremes over the last cycle or, without one, over the load history.
-   subroutine add_extremes(simulation, values)
-      type(simulation_type), intent(in) :: simulation
+   subroutine add_extremes(extremes, values)
+      type(load_extremes_type), intent(in) :: extremes
       real(wp), intent(inout) :: values(:)
-      type(load_extremes_type) :: extremes
       character(*), parameter :: body(2) = ['lower', 'upper']
       integer :: i
 
-      call simulation%find_extremes(extremes)
       call put_extreme('largest_pressure', extremes%pressure)
       call put_extreme('largest_shear', extremes%shear)
       call put_extreme('largest_slip_range', extremes%slip_range)

@@ -13,7 +13,7 @@ module mfv_load_extremes
    use mfv_interior, only: has_interior, von_mises_stress
    use mfv_kinds, only: pi, wp
    use mfv_material, only: plane_strain
-   use mfv_motions, only: bulk_motions, motion_approach
+   use mfv_motions, only: bulk_motions, motion_approach, motion_count
    use mfv_node_status, only: in_contact
    use mfv_zone_edges, only: find_patches, largest_shear, outermost_edges, patch_type, zone_edges_type
    implicit none
@@ -53,8 +53,12 @@ module mfv_load_extremes
       !> Rows that may have these, 0 for none, and the estimates in them, force/length^2.
       integer :: row(most_rows, candidate_count) = 0
       real(wp) :: estimate(most_rows, candidate_count) = -1.0_wp
+      !> The last row, and the motions of its state.
+      integer :: last_row = 0
+      real(wp) :: last_motion(motion_count) = 0.0_wp
    contains
       procedure :: add_state
+      procedure :: is_of
       procedure :: is_repeated
    end type load_extremes_type
 
@@ -94,6 +98,16 @@ contains
       if (present(y)) self%y = y
    end subroutine raise
 
+   !> Whether an extreme has been found in this state, the last one.
+   pure logical function is_of(self, extreme, state)
+      class(load_extremes_type), intent(in) :: self
+      type(extreme_type), intent(in) :: extreme
+      type(contact_state_type), intent(in) :: state
+
+      is_of = extreme%row > 0 .and. extreme%row == self%last_row .and. &
+              .not. any(abs(state%fields%motion - self%last_motion) > 0.0_wp)
+   end function is_of
+
    !> Add the state at the end of a load segment. `slip`: of the stretch so far. `friction`: whether friction acts in the segment.
    !> `place`: where it is among the rows of each stress, 0 if it is not; shape (candidate_count).
    subroutine add_state(self, model, state, slip, row, friction, place)
@@ -109,6 +123,8 @@ contains
       real(wp) :: shear, estimates(candidate_count), arc
       integer :: i
 
+      self%last_row = row
+      self%last_motion = state%fields%motion
       call find_patches(model, state, patches)
       edges = outermost_edges(patches)
    if (edges%contact) call self%pressure%raise(maxval(state%fields%pressure), row, place_of_largest(model%x, state%fields%pressure))
