@@ -113,7 +113,7 @@ def test_points_are_printed(folder):
         (("case.h5", "--step", "9"), "case.h5: the result has no state steps/0009"),
         (("case.h5", "--body", "upper"), "the upper body is rigid or given by a matrix"),
         (("nowhere.h5",), "nowhere.h5: no such file"),
-        (("case.nml",), "case.nml is not an HDF5 file"),
+        (("case.nml",), "case.nml is a case, not a result; solve it first with 'mfv run'"),
         (("case.h5", "--at", "nowhere.txt"), "nowhere.txt"),
         (("other.h5",), "attribute input is missing: not a result of MFV"),
     ],

@@ -6,7 +6,7 @@ module mfv_resolution
    use mfv_contact_model, only: needs_equal_intervals
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
-   use mfv_motions, only: motion_approach, motion_rotation
+   use mfv_motions, only: motion_approach
    use mfv_node_status, only: holds, in_contact, slip_sign
    use mfv_observables, only: observable_count, observables
    use mfv_profile_sampling, only: find_missed, negligible_pressure, pressure_of_wave
@@ -396,31 +396,23 @@ contains
       end subroutine add
    end subroutine check_slip_zones
 
-   !> Zones without a node, which change the number of stick zones: of stick between neighbouring nodes that slip in opposite
-   !> directions, and of slip where sticking nodes are near their friction limit. And stick zones with few nodes between opposite
+   !> Stick zones without a node, between neighbouring nodes that slip in opposite directions, which change their number. (A maximum
+   !> of the shear near the friction limit inside a stick zone is no sign of a slip zone: former edges have one on any mesh.) And
+   !> stick zones with few nodes between opposite
    !> slip, in which the shear traction changes its sign: the stress along the surface would have no limit without them.
    subroutine check_stick_zones(simulation, unresolved)
       type(simulation_type), intent(in) :: simulation
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
-      !> Part of the friction limit.
-      real(wp), parameter :: near = 0.9_wp
-      real(wp) :: ratio(simulation%contact%model%nodes())
       type(zone_type), allocatable :: zones(:)
       character(len=80) :: names
       integer :: node
 
       associate (model => simulation%contact%model, state => simulation%contact%state)
          if (.not. model%tangential .or. .not. allocated(model%scene%friction%law)) return
-         ratio = 0.0_wp
-         where (holds(state%status) .and. state%fields%pressure > 0.0_wp) &
-            ratio = abs(state%fields%shear)/(model%static_friction*state%fields%pressure)
-         do node = 2, model%nodes() - 1
-            ! Where rolling began or turned, the ratio has a maximum that is resolved.
-            if (slip_sign(state%status(node))*slip_sign(state%status(node + 1)) >= 0 .and. .not. &
-                (.not. model%moves(motion_rotation) .and. all(holds(state%status(node - 1:node + 1))) .and. &
-                 ratio(node) > max(near, ratio(node - 1), ratio(node + 1)))) cycle
-            call add_unresolved(unresolved, 'stick_zones', 'near x = '//to_text(model%x(node), 4)//' a stick or slip zone has '// &
-                                'no node', 'use more nodes')
+         do node = 1, model%nodes() - 1
+            if (slip_sign(state%status(node))*slip_sign(state%status(node + 1)) >= 0) cycle
+            call add_unresolved(unresolved, 'stick_zones', 'near x = '//to_text(model%x(node), 4)//' a stick zone has no node', &
+                                'use more nodes')
             exit
          end do
          zones = zones_of(holds(state%status))
