@@ -60,9 +60,11 @@ contains
 
       coupled = model%compliance%has_block(block_wt)
       associate (method => model%scene%method, proportional => model%scene%friction%is_proportional())
-         if (.not. method%accuracy >= 0.0_wp) &
+         if (.not. method%accuracy >= 0.0_wp) then
             method%accuracy = merge(usual, 0.0_wp, method%stepping == stepping_leap .or. method%stepping == stepping_auto .and. &
                                     proportional .and. model%nodes() >= least_by_default)
+            model%scene%mesh%nodes_by_accuracy = .false.
+         end if
          if (method%stepping /= stepping_auto) return
          method%stepping = stepping_event
          if (.not. proportional) return

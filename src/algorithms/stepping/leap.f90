@@ -158,7 +158,6 @@ contains
       type(chain_type) :: finer
       integer :: increments
 
-      accepted = .false.
       call allow_errors(path)
       if (may_depend_on_path(path, interval)) call find_start(path, interval, start)
       call find_stiffness(path, interval, start)
@@ -166,7 +165,7 @@ contains
       increments = 1
       if (accepted .and. path%record_events) increments = max(1, min(most_recorded, path%state%contact_nodes()/nodes_a_record))
       call make_chain(path, interval, increments, start, chain)
-      if (.not. chain%found) accepted = .false.
+      accepted = accepted .and. chain%found
       if (.not. chain%found) return
       if (accepted .or. chain%start_error > path%model%scene%method%accuracy &
           *max(path%certificate%traction_scale, chain%traction)) return
