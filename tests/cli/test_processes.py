@@ -92,26 +92,6 @@ def test_a_second_signal_ends_the_program(tmp_path):
     assert run.returncode in (130, -signal.SIGTERM)  # 130: the result was written between the signals
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_the_search_for_yield_costs_about_as_much_as_the_contact(seed, tmp_path):
-    """Without groups of elements that of a disk on 3,001 nodes took 20 times as long or more."""
-    random_number = random.Random(seed).uniform
-    text = (
-        "&body shape='half_plane', rigid=.true. /\n"
-        f"&body shape='disk', radius={random_number(0.3, 0.9)}, shear_modulus={random_number(50, 90)}, poisson_ratio=0.3{{}} /\n"
-        f"&mesh nodes=3001 /\n&step normal_force={random_number(0.005, 0.02)} /\n"
-    )
-    seconds = []
-    for name, more in (("quick", ""), ("searched", ", yield_strength=1e-3")):
-        (tmp_path / f"{name}.nml").write_text(text.format(more))
-        before = os.times().children_user
-        run = subprocess.run([PROGRAM, f"{name}.nml"], cwd=tmp_path, capture_output=True, text=True)
-        assert run.returncode == 0, run.stderr
-        seconds.append(os.times().children_user - before)
-    assert "exceeds its yield_strength" in run.stdout
-    assert seconds[1] < 6 * seconds[0], seconds
-
-
 @pytest.mark.parametrize("blanks", ["", "   "])
 @pytest.mark.parametrize(
     "group",
