@@ -78,6 +78,7 @@ contains
       integer, intent(in) :: group
       complex(wp), intent(in) :: ends(:, :), place(:, :), sigma(:, :), weight(:, :)
       complex(wp), dimension(size(place, 1), size(place, 2)) :: terms, shear, ratio
+      real(wp), dimension(size(place, 1), size(place, 2)) :: along, first, second
       integer :: k
 
       self%middle(group) = 0.5_wp*(ends(1, 1) + ends(2, size(ends, 2)))
@@ -86,9 +87,13 @@ contains
       terms = sigma*weight
       if (.not. any(abs(aimag(ratio)) > 0.0_wp)) then
          ! Along a straight surface shear moments are the imaginary parts.
+         along = real(ratio, wp)
+         first = real(terms, wp)
+         second = aimag(terms)
          do k = 0, most_moments
-            self%moments(k, group) = sum(terms)
-            terms = terms*real(ratio, wp)
+            self%moments(k, group) = cmplx(sum_of(first), sum_of(second), wp)
+            first = first*along
+            second = second*along
          end do
          self%shear_moments(:, group) = aimag(self%moments(:, group))
          return
@@ -100,6 +105,21 @@ contains
          terms = terms*ratio
          shear = shear*ratio
       end do
+
+   contains
+
+      !> Sum in vectors of the first dimension, which a compiler may not do for `sum`.
+      pure real(wp) function sum_of(values)
+         real(wp), intent(in) :: values(:, :)
+         real(wp) :: sums(size(values, 1))
+         integer :: j
+
+         sums = 0.0_wp
+         do j = 1, size(values, 2)
+            sums = sums + values(:, j)
+         end do
+         sum_of = sum(sums)
+      end function sum_of
    end subroutine add_leaf
 
    !> Middle, radius and moments of a group from those of its halves.
@@ -141,14 +161,6 @@ contains
 
       shifted = [(moments(k)*shrink**k, k=0, most_moments)]
       ! Binomial sums, in place.
-      if (.not. abs(aimag(shift)) > 0.0_wp) then
-         do i = 1, most_moments
-            do k = most_moments, i, -1
-               shifted(k) = shifted(k) + real(shift, wp)*shifted(k - 1)
-            end do
-         end do
-         return
-      end if
       do i = 1, most_moments
          do k = most_moments, i, -1
             shifted(k) = shifted(k) + shift*shifted(k - 1)

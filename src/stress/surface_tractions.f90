@@ -27,6 +27,8 @@ module mfv_surface_tractions
       !> Minimum of elements in all contact zones: with fewer, the point of the largest von Mises stress, a flat maximum, would
       !> move to their ends.
       integer :: fewest_elements = 300
+      !> Arc lengths near which stresses are wanted: patches that contain none of them are coarse. Not allocated: all are fine.
+      real(wp), allocatable :: wanted(:)
    end type zone_list_type
 
    !> Elements from `from` to `to`, lengths, in ascending order, with p + i tau linear from `first` to `last`, force/length^2;
@@ -77,6 +79,8 @@ module mfv_surface_tractions
       logical :: counted = .false., graded = .false.
       !> Tractions up to this are zero, force/length^2.
       real(wp) :: nothing = 0.0_wp
+      !> Elements between an edge and the next node; lower limit of those in all.
+      integer :: beside_edge = 0, fewest = 0
    contains
       procedure :: tractions
    end type patch_type
@@ -95,7 +99,7 @@ contains
       logical, allocatable :: sharp(:, :)
       integer, allocatable :: owner(:)
       real(wp), parameter :: near = 1.0e-6_wp
-      integer, parameter :: fewest_in_zone = 60
+      integer, parameter :: fewest_in_zone = 60, beside_edge = 30, fewest_coarse = 20, beside_edge_coarse = 8
       integer, allocatable :: nodes(:)
       logical, allocatable :: done(:)
       type(traction_elements_type), allocatable :: parts(:)
@@ -122,9 +126,17 @@ contains
          patch%shear = shear(nodes)
          patch%contact = zone_type(edge=edges(:, i), rooted=.not. sharp(:, i), rest=table_type())
          patch%counted = i > size(zones%contact, 2)
+         patch%fewest = fewest
+         patch%beside_edge = beside_edge
+         if (allocated(zones%wanted)) then
+            if (.not. any(zones%wanted >= edges(1, i) .and. zones%wanted <= edges(2, i))) then
+               patch%fewest = fewest_coarse
+               patch%beside_edge = beside_edge_coarse
+            end if
+         end if
          call fit_patch(patch, zones)
          number = number + 1
-         call find_elements(patch, min(longest, (patch%contact%edge(2) - patch%contact%edge(1))/fewest), parts(number))
+         call find_elements(patch, longest, parts(number))
       end do
       elements%from = [(parts(k)%from, k=1, number)]
       elements%to = [(parts(k)%to, k=1, number)]
@@ -642,7 +654,7 @@ contains
       complex(wp), allocatable :: values(:)
       integer :: n
 
-      knots = knots_of(patch, longest)
+      knots = knots_of(patch, min(longest, (patch%contact%edge(2) - patch%contact%edge(1))/patch%fewest))
       n = size(knots)
       allocate (values(n), source=(0.0_wp, 0.0_wp))
       allocate (elements%edges(0))
@@ -661,8 +673,8 @@ contains
    end subroutine find_elements
 
    !> Ends of the elements of a patch: its nodes and edges, and points between them so that no element is longer than half its
-   !> distance from the next rooted edge (a ratio of the root of 1/2 beside it) or than `longest`: sigma_xx on the surface has
-   !> a kink at each end. Symmetric with respect to left and right.
+   !> distance from the next rooted edge or than `longest`: sigma_xx on the surface has a kink at each end. Symmetric with respect
+   !> to left and right.
    function knots_of(patch, longest) result(knots)
       type(patch_type), intent(in) :: patch
       real(wp), intent(in) :: longest
@@ -687,7 +699,7 @@ contains
       do i = 2, size(points)
          left = knots(number)
          if (.not. points(i) > left) cycle
-         call append_between(left, points(i), roots, longest, knots, number)
+         call append_between(left, points(i), roots, longest, patch%beside_edge, knots, number)
          call append(knots, number, points(i:i))
       end do
       ! Between edges that differ by round-off there is no room for points.
@@ -747,13 +759,15 @@ contains
       end do
    end function merged
 
-   !> Append the knots between two points: see knots_of.
-   pure recursive subroutine append_between(left, right, roots, longest, knots, number)
+   !> Append the knots between two points: see knots_of. Beside a rooted edge their distances from it grow as the sixth power of their
+   !> number: elements of a root contribute about the same errors to the stress at the edge, of the fourth order in their number.
+   pure recursive subroutine append_between(left, right, roots, longest, parts, knots, number)
       real(wp), intent(in) :: left, right, roots(:), longest
+      integer, intent(in) :: parts
       real(wp), allocatable, intent(inout) :: knots(:)
       integer, intent(inout) :: number
-      integer, parameter :: parts = 54
-      real(wp), parameter :: most = 1000.0_wp, ratio = sqrt(0.5_wp)
+      real(wp), parameter :: most = 1000.0_wp
+      integer, parameter :: power = 6
       real(wp) :: distance, middle
       logical :: is_root(2)
       integer :: i, pieces
@@ -762,13 +776,13 @@ contains
       if (all(is_root)) then
          middle = 0.5_wp*(left + right)
          if (.not. (middle > left .and. middle < right)) return
-         call append_between(left, middle, roots, longest, knots, number)
+         call append_between(left, middle, roots, longest, parts, knots, number)
          call append(knots, number, [middle])
-         call append_between(middle, right, roots, longest, knots, number)
+         call append_between(middle, right, roots, longest, parts, knots, number)
       else if (is_root(1)) then
-         call append(knots, number, [(left + (right - left)*ratio**i, i=parts, 1, -1)])
+         call append(knots, number, [(left + (right - left)*(real(i, wp)/parts)**power, i=1, parts - 1)])
       else if (is_root(2)) then
-         call append(knots, number, [(right - (right - left)*ratio**i, i=1, parts)])
+         call append(knots, number, [(right - (right - left)*(real(i, wp)/parts)**power, i=parts - 1, 1, -1)])
       else
          distance = longest
          if (size(roots) > 0) distance = min(distance, 0.5_wp*minval(abs(left - roots)), 0.5_wp*minval(abs(right - roots)))

@@ -309,15 +309,17 @@ contains
       integer, intent(in) :: columns
       logical, intent(in) :: is_trace
       integer, intent(out) :: found
-      integer :: choices(3), i, mark, run, longest
+      integer :: choices(3), i, mark, run, longest, rows
       logical :: decimal_comma
 
+      rows = count([(.not. is_comment(text%line(i)), i=1, min(size(text%first), lines_of_sample))])
       choices = [columns, columns + 1, 1]
       found = columns
       decimal_comma = .false.
       longest = 0
       do i = 1, merge(3, 2, is_trace)
          do mark = 1, 2
+            if (longest == rows) exit
             text%decimal_comma = mark == 2
             run = text%best_run(choices(i))
             if (run <= longest) cycle
