@@ -5,7 +5,8 @@
 !>     run,<intervals on the circle>,<nodes in contact>,<kernel>,<seconds assembly>,<seconds in all>,<linear solves>
 module bench_circle
    use, intrinsic :: iso_fortran_env, only: output_unit
-   use mfv_body, only: new_disk, new_half_plane_body
+   use mfv_body, only: new_body
+   use mfv_geometry, only: new_disk, new_half_plane_surface
    use mfv_circle, only: kernel_exact, kernel_fourier
    use mfv_circle_kernels
    use mfv_clock, only: seconds_now
@@ -74,12 +75,12 @@ contains
 
       half_width = 50*2*pi/circle
       scene%title = 'bench'
-      scene%lower = new_disk(1.0_wp)
+      scene%lower = new_body(new_disk(1.0_wp))
       scene%lower%rigid = .false.
-      scene%lower%datum = 1.0_wp
-      scene%lower%material = new_material(1.0_wp, 0.3_wp, plane_strain)
-      scene%lower%kernel = kernel
-      scene%upper = new_half_plane_body()
+      scene%lower%elasticity%datum = 1.0_wp
+      scene%lower%elasticity%material = new_material(1.0_wp, 0.3_wp, plane_strain)
+      scene%lower%elasticity%kernel = kernel
+      scene%upper = new_body(new_half_plane_surface())
       scene%mesh%nodes = circle
       scene%mesh%whole_circle = .true.
       scene%friction = uniform_friction('coulomb', 0.3_wp, 0.3_wp)

@@ -20,7 +20,8 @@ MANY_USES = 5, 20
 
 CONTENTS = {
     "common": "kinds, errors, statuses, text, GSL, FFTW, safe files",
-    "compliance": "kernels of bodies, Toeplitz and Fourier products",
+    "geometry": "surfaces of bodies before deformation, measured profiles",
+    "compliance": "elasticity of bodies, kernels, Toeplitz and Fourier products",
     "stress": "stresses inside the bodies and along their surfaces",
     "reference": "closed forms",
     "algorithms/friction": "statuses and events of a node, one file per law",

@@ -135,6 +135,7 @@ class Elastic(TypedDict, total=False):
 class Round(Elastic, total=False):
     """Those of a disk or a hole."""
 
+    elasticity: Literal["own", "half_plane"] | None
     kernel: Literal["exact", "fourier"] | None
     harmonics: int | None
 
@@ -172,6 +173,7 @@ class Body(KeyGroup):
     angle: float | None = None
     coefficient: float | None = None
     exponent: float | None = None
+    elasticity: Literal["own", "half_plane"] | None = None
     kernel: Literal["exact", "fourier"] | None = None
     harmonics: int | None = None
     file: str | os.PathLike[str] | None = None

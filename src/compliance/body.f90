@@ -1,246 +1,73 @@
-!> Bodies: shape near the contact, material and compliance. Before deformation they touch at x = 0, y = 0, the lower body
-!> below. `recess` is the distance of a body's surface from the common tangent there.
+!> Bodies: a surface, an elasticity or none, and a yield strength. Before deformation they touch at x = 0, y = 0, the lower body
+!> below.
 module mfv_body
-   use, intrinsic :: iso_c_binding, only: c_int, c_null_ptr, c_ptr, c_size_t
-   use mfv_circle, only: kernel_exact, new_circle
-   use mfv_circle_kernels, only: body_disk, body_hole
    use mfv_compliance, only: compliance_type
-   use mfv_gsl, only: gsl_interp_alloc, gsl_interp_eval, gsl_interp_free, gsl_interp_init, gsl_interp_linear, gsl_interp_steffen
-   use mfv_half_plane, only: new_half_plane
+   use mfv_elasticity, only: as_disk, as_half_plane, as_hole, as_matrix, elasticity_type
+   use mfv_geometry, only: gap_in_hole, geometry_type, new_points, radial_gap_in_hole
    use mfv_kinds, only: wp
-   use mfv_material, only: material_type
-   use mfv_matrix_compliance, only: matrix_of, new_matrix_compliance
    implicit none
    private
-   public :: body_type, new_half_plane_body, new_disk, new_hole, new_flat_punch, new_rounded_punch, new_power, new_wedge, &
-             new_profile, new_matrix_body
-   public :: gap_between, radial_gap_between
-   public :: shape_half_plane, shape_disk, shape_hole, shape_flat_punch, shape_rounded_punch, shape_wedge, shape_power, &
-             shape_profile, shape_matrix, shape_names
-   public :: interpolation_unset, interpolation_linear, interpolation_cubic
+   public :: body_type, new_body, new_matrix_body, gap_between, radial_gap_between
 
-   integer, parameter :: shape_half_plane = 1, shape_disk = 2, shape_hole = 3, shape_flat_punch = 4, shape_rounded_punch = 5, &
-                         shape_wedge = 6, shape_power = 7, shape_profile = 8, shape_matrix = 9
-   !> Names of the shapes, in the order of their numbers.
-   character(*), parameter :: shape_names = 'half_plane disk hole flat_punch rounded_punch wedge power profile matrix'
-   !> Interpolation of a profile: linear by default; linear or monotone cubic by choice, in the order of the key.
-   integer, parameter :: interpolation_unset = 0, interpolation_linear = 1, interpolation_cubic = 2
-
-   !> A body. Lengths by default.
-   type :: body_type
-      integer :: shape = shape_half_plane
+   type, extends(geometry_type) :: body_type
       logical :: rigid = .true.
-      !> Material of an elastic body.
-      type(material_type) :: material = material_type()
-      !> Disk and hole: radius R. Rounded punch: radius of its edges.
-      real(wp) :: radius = 0.0_wp
-      !> Rounded punch: half-width of its flat.
-      real(wp) :: flat_half_width = 0.0_wp
-      !> Power law: recess coefficient*|x|**exponent; the coefficient is a length^(1 - exponent).
-      real(wp) :: coefficient = 0.0_wp, exponent = 0.0_wp
-      !> Elastic bodies: distance from x = 0 to the datum, the surface point where displacements vanish.
-      real(wp) :: datum = 0.0_wp
-      !> Whether this is a default that depends on the loads or on the mesh, not on the shapes.
-      logical :: datum_of_case = .false.
+      !> Of an elastic body.
+      type(elasticity_type) :: elasticity
       !> Elastic bodies: yield strength, force/length^2; 0: unknown.
       real(wp) :: yield_strength = 0.0_wp
-      !> Elastic disk and hole: kernel and harmonics, see mfv_circle.
-      integer :: kernel = kernel_exact, harmonics = 0
-      !> First and last x of the surface.
-      real(wp) :: from = -huge(1.0_wp), to = huge(1.0_wp)
-      !> Profile: increasing positions and the recess there. Matrix: nodes and their initial recess.
-      real(wp), allocatable :: position(:), height(:)
-      !> Profile: one of interpolation_...
-      integer :: interpolation = interpolation_unset
-      !> Profile: points of the measurement without a value, which are not in it.
-      integer :: dropouts = 0
-      !> Matrix: surface length of each node, and displacements by nodal forces.
-      real(wp), allocatable :: width(:), matrix(:, :)
    contains
       procedure :: covers
-      procedure :: recess
-      procedure :: curvature
-      procedure :: circular
-      procedure :: is_regular
-      procedure :: half_extent
-      procedure :: size_of_shape
-      procedure :: from_polyline
+      procedure :: deforms_as_circle
+      procedure :: is_matrix
       procedure :: make_compliance
    end type body_type
 
 contains
 
-   !> A flat surface of infinite extent.
-   pure type(body_type) function new_half_plane_body() result(body)
-      body = body_type(shape=shape_half_plane)
-   end function new_half_plane_body
+   !> A rigid body with a surface. If it becomes elastic, disk and hole deform as such, all others as half-planes.
+   pure type(body_type) function new_body(geometry) result(body)
+      type(geometry_type), intent(in) :: geometry
 
-   !> Disk of the given radius (length).
-   pure type(body_type) function new_disk(radius) result(body)
-      real(wp), intent(in) :: radius
-
-      body = body_type(shape=shape_disk, radius=radius, from=-radius, to=radius)
-   end function new_disk
-
-   !> Infinite plane around a hole of the given radius (length).
-   pure type(body_type) function new_hole(radius) result(body)
-      real(wp), intent(in) :: radius
-
-      body = body_type(shape=shape_hole, radius=radius, from=-radius, to=radius)
-   end function new_hole
-
-   !> Flat punch with sharp edges at x = -half_width and half_width (length).
-   pure type(body_type) function new_flat_punch(half_width) result(body)
-      real(wp), intent(in) :: half_width
-
-      body = body_type(shape=shape_flat_punch, from=-half_width, to=half_width)
-   end function new_flat_punch
-
-   !> Punch that is flat over |x| < half_width; edges with the recess (|x| - half_width)^2/(2 edge_radius); lengths.
-   pure type(body_type) function new_rounded_punch(half_width, edge_radius) result(body)
-      real(wp), intent(in) :: half_width, edge_radius
-
-      body = body_type(shape=shape_rounded_punch, flat_half_width=half_width, radius=edge_radius)
-   end function new_rounded_punch
-
-   !> Body with the recess coefficient*|x|**exponent; the coefficient is a length^(1 - exponent).
-   pure type(body_type) function new_power(coefficient, exponent) result(body)
-      real(wp), intent(in) :: coefficient, exponent
-
-      body = body_type(shape=shape_power, coefficient=coefficient, exponent=exponent)
-   end function new_power
-
-   !> Wedge: recess slope*|x|, a power law with the exponent 1.
-   pure type(body_type) function new_wedge(slope) result(body)
-      real(wp), intent(in) :: slope
-
-      body = body_type(shape=shape_wedge, coefficient=slope, exponent=1.0_wp)
-   end function new_wedge
-
-   !> Profile through the points (position, height), lengths; height is the recess. `interpolation`: linear, or Steffen's
-   !> monotone cubic, without overshoot, with rounded corners. At least three strictly increasing positions (checked by the
-   !> caller).
-   pure type(body_type) function new_profile(position, height, interpolation) result(body)
-      real(wp), intent(in) :: position(:), height(:)
-      integer, intent(in), optional :: interpolation
-
-      body%shape = shape_profile
-      if (present(interpolation)) body%interpolation = interpolation
-      body%position = position
-      body%height = height
-      body%from = position(1)
-      body%to = position(size(position))
-   end function new_profile
+      body%geometry_type = geometry
+      body%elasticity%kind = as_half_plane
+      if (geometry%is_disk()) body%elasticity%kind = as_disk
+      if (geometry%is_hole()) body%elasticity%kind = as_hole
+   end function new_body
 
    !> Elastic body of a user's matrix: `position` and `recess` of its surface nodes and surface length `width` of each,
    !> lengths, shape (n); `matrix`: displacements by nodal forces, see mfv_matrix_compliance.
    pure type(body_type) function new_matrix_body(position, recess, width, matrix) result(body)
       real(wp), intent(in) :: position(:), recess(:), width(:), matrix(:, :)
 
-      body%shape = shape_matrix
+      body%geometry_type = new_points(position, recess)
       body%rigid = .false.
-      body%position = position
-      body%height = recess
-      body%width = width
-      body%matrix = matrix
-      body%from = position(1)
-      body%to = position(size(position))
+      body%elasticity%kind = as_matrix
+      body%elasticity%width = width
+      body%elasticity%matrix = matrix
    end function new_matrix_body
 
-   !> Whether the body has a surface at x. `parabolic`: the parabola of a rigid circle is unlimited; an elastic one ends with
-   !> the circle.
+   !> Whether the body deforms as a disk or as the plane around a hole.
+   elemental logical function deforms_as_circle(self)
+      class(body_type), intent(in) :: self
+
+      deforms_as_circle = .not. self%rigid .and. self%elasticity%is_circle()
+   end function deforms_as_circle
+
+   !> Whether it is a user's matrix, which has its own nodes.
+   elemental logical function is_matrix(self)
+      class(body_type), intent(in) :: self
+
+      is_matrix = self%elasticity%is_matrix()
+   end function is_matrix
+
+   !> Whether the body has a surface at x. `parabolic`: the parabola of a circle is unlimited, unless it deforms as a circle.
    elemental logical function covers(self, x, parabolic)
       class(body_type), intent(in) :: self
       real(wp), intent(in) :: x
       logical, intent(in) :: parabolic
 
-      covers = x >= self%from .and. x <= self%to .or. (parabolic .and. self%rigid .and. self%circular())
+      covers = self%has_surface(x) .or. (parabolic .and. self%circular() .and. .not. self%deforms_as_circle())
    end function covers
-
-   !> Whether the body is a disk or a hole.
-   elemental logical function circular(self)
-      class(body_type), intent(in) :: self
-
-      circular = self%shape == shape_disk .or. self%shape == shape_hole
-   end function circular
-
-   !> Whether the surface is a circle or straight.
-   pure logical function is_regular(self)
-      class(body_type), intent(in) :: self
-
-      is_regular = self%shape /= shape_profile
-      if (self%shape == shape_matrix) is_regular = all(abs(self%height) <= 0.0_wp)
-   end function is_regular
-
-   !> Curvature at x = 0, 1/length: positive for a disk, negative for a hole, 0 if flat or undefined.
-   elemental real(wp) function curvature(self)
-      class(body_type), intent(in) :: self
-
-      curvature = 0.0_wp
-      if (self%shape == shape_disk) curvature = 1.0_wp/self%radius
-      if (self%shape == shape_hole) curvature = -1.0_wp/self%radius
-   end function curvature
-
-   !> Largest |x| of the surface, length; huge for a half-plane.
-   pure real(wp) function half_extent(self)
-      class(body_type), intent(in) :: self
-
-      half_extent = max(abs(self%from), abs(self%to))
-   end function half_extent
-
-   !> A characteristic length of the shape; huge without one.
-   pure real(wp) function size_of_shape(self)
-      class(body_type), intent(in) :: self
-
-      size_of_shape = self%half_extent()
-      if (self%shape == shape_rounded_punch) size_of_shape = self%flat_half_width + self%radius
-   end function size_of_shape
-
-   !> Distance of the surface from the tangent at x = 0 (length) at the positions `x`; zero outside the surface (see
-   !> `covers`). `parabolic`: x^2/(2R) instead of the circle.
-   function recess(self, x, parabolic) result(depth)
-      class(body_type), intent(in) :: self
-      real(wp), intent(in) :: x(:)
-      logical, intent(in) :: parabolic
-      real(wp) :: depth(size(x))
-
-      depth = 0.0_wp
-      select case (self%shape)
-      case (shape_disk, shape_hole)
-         if (parabolic) then
-            depth = 0.5_wp*self%curvature()*x**2
-         else
-            where (self%covers(x, parabolic)) depth = sign(1.0_wp, self%curvature())*x**2/(self%radius + chord(self%radius, x))
-         end if
-      case (shape_rounded_punch)
-         depth = max(abs(x) - self%flat_half_width, 0.0_wp)**2/(2.0_wp*self%radius)
-      case (shape_power, shape_wedge)
-         depth = power_of(self, abs(x))
-      case (shape_profile)
-         depth = interpolated(self, x, self%interpolation)
-      case (shape_matrix)
-         depth = self%height
-      end select
-   end function recess
-
-   !> C x^n, without overflow for any x >= 0.
-   elemental real(wp) function power_of(body, x)
-      type(body_type), intent(in) :: body
-      real(wp), intent(in) :: x
-      real(wp), parameter :: largest = 230.0_wp
-
-      power_of = 0.0_wp
-      if (.not. x > 0.0_wp) return
-      power_of = exp(largest)
-      if (log(body%coefficient) + body%exponent*log(x) < largest) power_of = body%coefficient*x**body%exponent
-   end function power_of
-
-   !> Height of a circle's centre over its point at x: sqrt(R^2 - x^2).
-   elemental real(wp) function chord(radius, x)
-      real(wp), intent(in) :: radius, x
-
-      chord = sqrt(max((radius - x)*(radius + x), 0.0_wp))
-   end function chord
 
    !> Initial gaps (length) at the positions `x`: exact shapes, without cancellation for a disk in a hole of nearly its
    !> radius; or, `parabolic`, Hertz's parabolas. Zero outside a surface.
@@ -250,54 +77,26 @@ contains
       logical, intent(in) :: parabolic
       real(wp) :: gaps(size(x))
 
-      if (lower%circular() .and. upper%circular() .and. lower%shape /= upper%shape) then
-         if (lower%shape == shape_disk) then
-            gaps = clearance(lower%radius, upper%radius, x, parabolic)
-         else
-            gaps = clearance(upper%radius, lower%radius, x, parabolic)
-         end if
+      if (lower%is_disk() .and. upper%is_hole()) then
+         gaps = gap_in_hole(lower%radius, upper%radius, x, parabolic)
+      else if (lower%is_hole() .and. upper%is_disk()) then
+         gaps = gap_in_hole(upper%radius, lower%radius, x, parabolic)
       else
          gaps = lower%recess(x, parabolic) + upper%recess(x, parabolic)
       end if
       where (.not. (lower%covers(x, parabolic) .and. upper%covers(x, parabolic))) gaps = 0.0_wp
    end function gap_between
 
-   !> Gap of a disk in a hole that touch at x = 0. With the chords c = sqrt(R^2 - x^2) the difference of x^2/(R + c) contains
-   !> the factor R_hole - R_disk, which is factored out analytically.
-   elemental real(wp) function clearance(disk, hole, x, parabolic)
-      real(wp), intent(in) :: disk, hole, x
-      logical, intent(in) :: parabolic
-      real(wp) :: chord_disk, chord_hole
-
-      if (parabolic) then
-         clearance = x**2*(hole - disk)/(2.0_wp*disk*hole)
-         return
-      end if
-      clearance = 0.0_wp
-      if (abs(x) > min(disk, hole)) return
-      chord_disk = chord(disk, x)
-      chord_hole = chord(hole, x)
-      clearance = x**2*(hole - disk)*(1.0_wp + (disk + hole)/(chord_disk + chord_hole)) &
-                  /((disk + chord_disk)*(hole + chord_hole))
-   end function clearance
-
-   !> Initial gaps (length) of a disk in a hole that touch at theta = 0, along the radii of the hole at the angles `theta`;
-   !> without cancellation. With e = R_hole - R_disk: e (1 - cos) + R_disk - sqrt(R_disk^2 - (e sin)^2).
+   !> Initial gaps (length) of a disk in a hole that touch at theta = 0, along the radii of the hole at the angles `theta`.
    pure function radial_gap_between(lower, upper, theta) result(gaps)
       type(body_type), intent(in) :: lower, upper
       real(wp), intent(in) :: theta(:)
-      real(wp) :: gaps(size(theta)), clearance_of_radii, disk
+      real(wp) :: gaps(size(theta))
 
-      disk = min(lower%radius, upper%radius)
-      clearance_of_radii = abs(lower%radius - upper%radius)
-      gaps = (clearance_of_radii*sin(theta))**2
-      gaps = 2.0_wp*clearance_of_radii*sin(0.5_wp*theta)**2 + gaps/(disk + sqrt(max(disk**2 - gaps, 0.0_wp)))
+      gaps = radial_gap_in_hole(min(lower%radius, upper%radius), max(lower%radius, upper%radius), theta)
    end function radial_gap_between
 
-   !> Compliance of an elastic body with `nodes` intervals of the width `interval` (length); unallocated for a rigid one.
-   !> `coupling`, `tangential`: see mfv_compliance. `common_radius`: with radial normals, radius of the arc with the nodes of
-   !> both bodies, to which tractions refer (length); else 0. Other shapes deform as half-planes. `ends`: of unequal intervals, arc
-   !> lengths, shape (nodes + 1).
+   !> Compliance of an elastic body; unallocated for a rigid one. Arguments: see mfv_elasticity.
    subroutine make_compliance(self, nodes, interval, coupling, tangential, common_radius, compliance, ends)
       class(body_type), intent(in) :: self
       integer, intent(in) :: nodes, coupling
@@ -305,60 +104,9 @@ contains
       logical, intent(in) :: tangential
       class(compliance_type), allocatable, intent(out) :: compliance
       real(wp), intent(in), optional :: ends(:)
-      class(compliance_type), allocatable :: graded
-      real(wp) :: radius
 
       if (self%rigid) return
-      select case (self%shape)
-      case (shape_disk, shape_hole)
-         radius = merge(common_radius, self%radius, common_radius > 0.0_wp)
-         allocate (compliance, source=new_circle(merge(body_disk, body_hole, self%shape == shape_disk), self%material, &
-                                                 radius, nodes, interval, self%datum*(radius/self%radius), self%kernel, &
-                                                 self%harmonics, coupling, tangential, common_radius > 0.0_wp, ends))
-      case (shape_matrix)
-         allocate (compliance, source=new_matrix_compliance(self%matrix, self%width, coupling, tangential))
-      case default
-         allocate (compliance, source=new_half_plane(self%material, nodes, interval, self%datum, coupling, tangential, ends))
-      end select
-      if (.not. present(ends)) return
-      call move_alloc(compliance, graded)
-      allocate (compliance, source=matrix_of(graded))
+      call self%elasticity%make_compliance(self%radius, nodes, interval, coupling, tangential, common_radius, compliance, ends)
    end subroutine make_compliance
-
-   !> Distance at `x` between the two interpolations of a profile: linear from the chosen one, or monotone cubic from linear;
-   !> shape (size(x)), length.
-   function from_polyline(self, x) result(departure)
-      class(body_type), intent(in) :: self
-      real(wp), intent(in) :: x(:)
-      real(wp) :: departure(size(x))
-
-      departure = interpolated(self, x, interpolation_cubic) - interpolated(self, x, interpolation_linear)
-   end function from_polyline
-
-   !> A profile at `x`, by the given interpolation.
-   function interpolated(self, x, interpolation) result(heights)
-      class(body_type), intent(in) :: self
-      real(wp), intent(in) :: x(:)
-      integer, intent(in) :: interpolation
-      real(wp) :: heights(size(x))
-      type(c_ptr) :: interpolant
-      integer(c_size_t) :: points
-      integer(c_int) :: code
-      integer :: i
-
-      heights = 0.0_wp
-      points = size(self%position, kind=c_size_t)
-      if (interpolation == interpolation_cubic) then
-         interpolant = gsl_interp_alloc(gsl_interp_steffen, points)
-      else
-         interpolant = gsl_interp_alloc(gsl_interp_linear, points)
-      end if
-      code = gsl_interp_init(interpolant, self%position, self%height, points)
-      do i = 1, size(x)
-         if (.not. self%covers(x(i), .false.)) cycle
-         heights(i) = gsl_interp_eval(interpolant, self%position, self%height, x(i), c_null_ptr)
-      end do
-      call gsl_interp_free(interpolant)
-   end function interpolated
 
 end module mfv_body

@@ -48,7 +48,7 @@ contains
       call move_alloc(lower, self%body(lower_body)%compliance)
       call move_alloc(upper, self%body(upper_body)%compliance)
       flexibility = 0.0_wp
-      self%is_half_plane = .true.
+      self%is_homogeneous = .true.
       do i = 1, 2
          if (.not. self%deforms(i)) cycle
          associate (body => self%body(i)%compliance)
@@ -58,7 +58,7 @@ contains
             self%elastic_block = self%elastic_block .or. body%elastic_block
             self%block_values = self%block_values + body%block_values
             flexibility = flexibility + 1.0_wp/body%modulus
-            self%is_half_plane = self%is_half_plane .and. body%is_half_plane
+            self%is_homogeneous = self%is_homogeneous .and. body%is_homogeneous
          end associate
       end do
       self%modulus = 1.0_wp/flexibility

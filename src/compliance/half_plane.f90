@@ -63,7 +63,7 @@ contains
       call self%choose_blocks(coupling, tangential)
       self%cross = (material%kolosov - 1.0_wp)/(8.0_wp*material%shear_modulus)*interval
       self%nodes = nodes
-      self%is_half_plane = .not. present(ends)
+      self%is_homogeneous = .not. present(ends)
       if (present(ends)) then
          call self%grade(ends, odd=[.false., .true.])
       else

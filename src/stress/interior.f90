@@ -3,7 +3,7 @@
 !> of contact; the upper body is the mirror image of a lower one with the shear reversed.
 module mfv_interior
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan, ieee_quiet_nan, ieee_value
-   use mfv_body, only: body_type, shape_disk, shape_hole, shape_matrix
+   use mfv_body, only: body_type
    use mfv_interior_circle, only: circle_load_type, longest_element, new_circle_load
    use mfv_interior_half_plane, only: half_plane_load_type, new_half_plane_load
    use mfv_kinds, only: certified, wp
@@ -69,7 +69,7 @@ contains
    pure logical function has_interior(body)
       type(body_type), intent(in) :: body
 
-      has_interior = .not. body%rigid .and. body%shape /= shape_matrix
+      has_interior = .not. (body%rigid .or. body%is_matrix())
    end function has_interior
 
    !> The body under `pressure` and `shear` (on the lower body, force/length^2) at nodes with the arc lengths `arc` and the
@@ -91,25 +91,25 @@ contains
       if (.not. available) return
       self%body = body
       self%side = merge(-1.0_wp, 1.0_wp, upper)
-      if (body%shape == shape_hole) self%outward = -1.0_wp
-      if (plane == plane_strain) self%out_of_plane = body%material%poisson_ratio
+      if (body%is_hole()) self%outward = -1.0_wp
+      if (plane == plane_strain) self%out_of_plane = body%elasticity%material%poisson_ratio
       self%peak = maxval(pressure)
       longest = huge(1.0_wp)
-      if (self%body%circular()) longest = longest_element*body%radius
+      if (self%body%deforms_as_circle()) longest = longest_element*body%radius
       seen = zones
       seen%beta = self%side*zones%beta
       if (radial) seen%turn = self%outward/body%radius
       call find_traction_elements(arc, width, pressure, self%side*shear, seen, longest, self%elements)
       associate (e => self%elements)
-         if (self%body%circular()) then
+         if (self%body%deforms_as_circle()) then
             self%length = body%radius
          else if (size(e%from) > 0) then
             self%length = 0.5_wp*(maxval(e%to) - minval(e%from))
          end if
          e%from = e%from/self%length
          e%to = e%to/self%length
-         if (self%body%circular()) then
-            self%circle = new_circle_load(body%shape == shape_disk, body%material%kolosov, e%from, e%to, &
+         if (self%body%deforms_as_circle()) then
+            self%circle = new_circle_load(body%is_disk(), body%elasticity%material%kolosov, e%from, e%to, &
                                           polar(self, radial, e%from, e%first), polar(self, radial, e%to, e%last))
          else
             self%half_plane = new_half_plane_load(e%from, e%to, e%first, e%last)
@@ -147,10 +147,10 @@ contains
       real(wp) :: from_origin(2)
       real(wp), parameter :: tolerance = 4.0_wp*epsilon(1.0_wp)
 
-      if (self%body%circular()) then
+      if (self%body%deforms_as_circle()) then
          from_origin = coordinates_in_radii(self, x, y)
          associate (beyond => 2.0_wp*from_origin(1) + sum(from_origin**2))
-            contains_point = merge(beyond <= tolerance, beyond >= -tolerance, self%body%shape == shape_disk)
+            contains_point = merge(beyond <= tolerance, beyond >= -tolerance, self%body%is_disk())
          end associate
       else
          contains_point = self%side*y <= 0.0_wp
@@ -176,13 +176,13 @@ contains
       values = ieee_value(1.0_wp, ieee_quiet_nan)
       if (.not. (ieee_is_finite(x) .and. ieee_is_finite(y))) return
       if (.not. self%contains_point(x, y)) return
-      if (self%body%circular()) then
+      if (self%body%deforms_as_circle()) then
          from_origin = coordinates_in_radii(self, x, y)
-         if (self%body%shape == shape_disk .and. hypot(1.0_wp + from_origin(1), from_origin(2)) < epsilon(1.0_wp)) return
+         if (self%body%is_disk() .and. hypot(1.0_wp + from_origin(1), from_origin(2)) < epsilon(1.0_wp)) return
          turned = self%circle%stress(from_origin)
          values(stress_xx) = turned(2)
          values(stress_yy) = turned(1)
-         values(stress_xy) = merge(turned(3), -turned(3), self%body%shape == shape_disk)
+         values(stress_xy) = merge(turned(3), -turned(3), self%body%is_disk())
       else
          values(:3) = self%half_plane%stress(x/self%length, abs(y)/self%length)
          values(stress_xx) = values(stress_xx) + self%bulk
@@ -196,7 +196,7 @@ contains
       class(interior_type), intent(in) :: self
       real(wp), intent(in) :: arc
 
-      if (self%body%circular()) then
+      if (self%body%deforms_as_circle()) then
          surface_stress = self%circle%surface_stress(arc/self%body%radius)
       else
          surface_stress = self%half_plane%surface_stress(arc/self%length) + self%bulk
@@ -211,7 +211,7 @@ contains
       real(wp) :: along, values(4)
 
       along = self%surface_stress(arc)
-      if (self%body%circular()) then
+      if (self%body%deforms_as_circle()) then
          traction = self%circle%traction(arc/self%length)
       else
          traction = -conjg(self%half_plane%traction(arc/self%length))
@@ -263,7 +263,7 @@ contains
       values(stress_tresca) = tresca_stress(values(:4))
       ! Of the larger principal stress in the plane, counterclockwise from the x axis, in (-pi/2, pi/2].
       values(stress_angle) = 0.5_wp*atan2(2.0_wp*values(stress_xy), values(stress_xx) - values(stress_yy))
-      if (self%body%circular()) values(8:10) = polar_stress(values(:4), self%centre(), x, y)
+      if (self%body%deforms_as_circle()) values(8:10) = polar_stress(values(:4), self%centre(), x, y)
    end function all_stresses
 
    !> y of the surface at x, lengths; NaN outside a disk or hole.
@@ -273,9 +273,9 @@ contains
       real(wp) :: depth(1)
 
       surface = ieee_value(1.0_wp, ieee_quiet_nan)
-      if (self%body%circular() .and. .not. self%body%covers(x, .false.)) return
+      if (self%body%deforms_as_circle() .and. .not. self%body%covers(x, .false.)) return
       surface = 0.0_wp
-      if (.not. self%body%circular()) return
+      if (.not. self%body%deforms_as_circle()) return
       depth = self%body%recess([x], parabolic=.false.)
       surface = -self%side*depth(1)
    end function surface
@@ -380,7 +380,7 @@ contains
       real(wp) :: point(2), angle
 
       point = [arc, -self%side*depth]
-      if (.not. self%body%circular()) return
+      if (.not. self%body%deforms_as_circle()) return
       angle = arc/self%body%radius
       ! Height of the arc above y = 0 and depth along the radius, each without a difference of radii.
       point(1) = (self%body%radius - self%outward*depth)*sin(angle)

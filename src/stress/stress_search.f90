@@ -48,7 +48,7 @@ contains
          return
       end if
       reach = length
-      if (interior%body%circular()) reach = min(reach, 0.5_wp*interior%body%radius)
+      if (interior%body%deforms_as_circle()) reach = min(reach, 0.5_wp*interior%body%radius)
       call find_starts(interior, length, reach, place, step, found)
       search%interior = interior
       search%deepest = reach
@@ -130,7 +130,7 @@ contains
       largest%y = largest%x
       largest%value = max(interior%bulk, 0.0_wp)
       if (.not. interior%half_width() > 0.0_wp) return
-      if (.not. interior%body%circular() .and. .not. interior%is_sheared()) return
+      if (.not. interior%body%deforms_as_circle() .and. .not. interior%is_sheared()) return
       if (interior%elements%singular) then
          largest%value = ieee_value(1.0_wp, ieee_quiet_nan)
          return
@@ -170,9 +170,9 @@ contains
       allocate (inside, source=pack(inner, [.true., inner(2:) > inner(:size(inner) - 1)]))
       nearest = 1.0e-3_wp*interior%half_width()
       farthest = 4.0_wp*interior%half_width()
-      if (interior%body%circular()) farthest = max(farthest, pi*interior%body%radius)
+      if (interior%body%deforms_as_circle()) farthest = max(farthest, pi*interior%body%radius)
       beside = [(nearest*(farthest/nearest)**((i - 1)/(steps - 1.0_wp)), i=1, steps)]
-      if (interior%body%circular()) &
+      if (interior%body%deforms_as_circle()) &
          beside = pack(beside, beside <= pi*interior%body%radius - max(abs(inside(1)), abs(inside(size(inside)))))
       places = [inside(1) - beside(size(beside):1:-1), inside, inside(size(inside)) + beside]
    end function candidates

@@ -759,8 +759,9 @@ contains
       end do
    end function merged
 
-   !> Append the knots between two points: see knots_of. Beside a rooted edge their distances from it grow as the sixth power of their
-   !> number: elements of a root contribute about the same errors to the stress at the edge, of the fourth order in their number.
+   !> Append the knots between two points: see knots_of. Beside a rooted edge their distances from it grow as the sixth power of
+   !> their number: elements of a root contribute about the same errors to the stress at the edge, of the fourth order in their
+   !> number.
    pure recursive subroutine append_between(left, right, roots, longest, parts, knots, number)
       real(wp), intent(in) :: left, right, roots(:), longest
       integer, intent(in) :: parts

@@ -3,6 +3,7 @@ module fuzz_readers
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_size_t
    use hdf5, only: H5I_ATTR_F, H5I_DATASET_F, H5I_DATASPACE_F, H5I_DATATYPE_F, H5I_FILE_F, H5I_GENPROP_LST_F, H5I_GROUP_F, hsize_t
    use mfv_body, only: body_type
+   use mfv_geometry, only: geometry_type
    use mfv_error, only: error_type
    use mfv_kinds, only: wp
    use mfv_matrix_file, only: read_matrix_body
@@ -58,14 +59,14 @@ contains
       character(kind=c_char), intent(in) :: path(*)
       character(kind=c_char), intent(inout) :: message(*)
       integer(c_size_t), value :: size
-      type(body_type) :: body
+      type(geometry_type) :: surface
       type(error_type), allocatable :: error
       real(wp), allocatable :: table(:, :)
       type(string_type), allocatable :: names(:)
 
       call read_named_table(from_c(path), names, table, error)
       call read_table(from_c(path), 'x, mu_static and mu_kinetic', 3, .true., table, error)
-      call read_profile(from_c(path), trace_type(), body, error)
+      call read_profile(from_c(path), trace_type(), surface, error)
       call tell(error, message, size, fuzz_columns)
    end function fuzz_columns
 

@@ -1,7 +1,8 @@
 !> Random cases with closed forms: Hertz, the flat punch and the cylinder pressed with friction (Spence, Goodman's coupling),
 !> Cattaneo and Mindlin with and without a cycle; random meshes, coefficients of friction, Poisson's ratios, loads and units.
 module test_closed_form_cases
-   use mfv_body, only: new_disk
+   use mfv_body, only: new_body
+   use mfv_geometry, only: new_disk
    use mfv_compliance, only: coupling_goodman
    use mfv_kinds, only: pi, wp
    use mfv_material, only: new_material, plane_strain
@@ -55,14 +56,14 @@ contains
       case default
          scene = cylinder(intervals(24, 250), 1.0_wp, mu, coupling_goodman)
       end select
-      scene%lower%material = new_material(modulus, 0.48_wp*u(5), plane_strain)
-      scene%lower%datum = length*radius
+      scene%lower%elasticity%material = new_material(modulus, 0.48_wp*u(5), plane_strain)
+      scene%lower%elasticity%datum = length*radius
       normal_force = 1.0e-3_wp*modulus*length*(0.3_wp + 0.7_wp*u(6))
       shear_force = mu*normal_force*(0.05_wp + 0.9_wp*u(7))
       half_width = length*radius
       truth = -1.0_wp
       if (modulo(i, kinds) /= kind_punch) then
-         scene%upper = new_disk(length*radius)
+         scene%upper = new_body(new_disk(length*radius))
          half_width = hertz_half_width(normal_force, length*radius, scene%modulus())
          scene%mesh%half_width = half_width*(1.1_wp + 0.3_wp*u(8))
          truth(place_peak_pressure) = 2.0_wp*normal_force/(pi*half_width)
@@ -74,7 +75,7 @@ contains
          call press(scene, force, .false.)
       case (kind_punch)
          call press(scene, force, .true.)
-         truth(place_stick_ratio) = spence_stick_ratio(mu, scene%dundurs_beta())
+         truth(place_stick_ratio) = spence_stick_ratio(mu, scene%beta())
       case (kind_cycle, kind_mindlin)
          call press(scene, force, .false.)
          call shear(scene, shear_force)
@@ -88,8 +89,8 @@ contains
          truth(place_lower_tension) = 2.0_wp*truth(place_peak_shear)
       case default
          call press(scene, force, .true.)
-         truth(place_stick_ratio) = spence_stick_ratio(mu, scene%dundurs_beta())
-         truth(place_peak_shear) = largest_spence_shear(force, half_width, mu, scene%dundurs_beta())
+         truth(place_stick_ratio) = spence_stick_ratio(mu, scene%beta())
+         truth(place_peak_shear) = largest_spence_shear(force, half_width, mu, scene%beta())
       end select
 
    contains

@@ -2,6 +2,7 @@
 module test_random_scenes_support
    use, intrinsic :: iso_fortran_env, only: int64
    use mfv_body
+   use mfv_geometry
    use mfv_compliance, only: coupling_full, coupling_goodman, coupling_none
    use test_friction
    use mfv_contact_state, only: contact_state_type
@@ -83,8 +84,8 @@ contains
       scene%title = 'random pin'
       scene%plane = merge(plane_strain, plane_stress, random%chance(0.7_wp))
       scene%coupling = random%one_of([coupling_full, coupling_goodman, coupling_none])
-      pin = new_disk(10.0_wp**random%between(-2.0_wp, 2.0_wp))
-      bore = new_hole(pin%radius*(1.0_wp + 10.0_wp**random%between(-4.0_wp, -0.3_wp)))
+      pin = new_body(new_disk(10.0_wp**random%between(-2.0_wp, 2.0_wp)))
+      bore = new_body(new_hole(pin%radius*(1.0_wp + 10.0_wp**random%between(-4.0_wp, -0.3_wp))))
       elastic = random%one_of([1, 2, 3, 3, 3])
       if (elastic /= 2) call make_elastic(random, scene%plane, pin%radius, pin)
       if (elastic /= 1) call make_elastic(random, scene%plane, bore%radius, bore)
@@ -127,18 +128,18 @@ contains
       radius = 10.0_wp**random%between(-2.0_wp, 2.0_wp)
       sizes%half_width = random%between(0.02_wp, 0.08_wp)*radius
       shapes = random%one_of([1, 2, 3, 4, 5, 6, 7])
-      scene%lower = new_half_plane_body()
-      scene%upper = new_disk(radius)
+      scene%lower = new_body(new_half_plane_surface())
+      scene%upper = new_body(new_disk(radius))
       select case (shapes)
       case (3)
-         scene%lower = new_disk(radius)
-         scene%upper = new_half_plane_body()
+         scene%lower = new_body(new_disk(radius))
+         scene%upper = new_body(new_half_plane_surface())
       case (4)
-         scene%lower = new_disk(random%between(1.0_wp, 2.0_wp)*radius)
+         scene%lower = new_body(new_disk(random%between(1.0_wp, 2.0_wp)*radius))
       case (5, 6)
-         scene%lower = new_hole(random%between(1.3_wp, 3.0_wp)*radius)
+         scene%lower = new_body(new_hole(random%between(1.3_wp, 3.0_wp)*radius))
       case (7)
-         scene%upper = new_flat_punch(sizes%half_width)
+         scene%upper = new_body(new_flat_punch(sizes%half_width))
       end select
       call make_elastic(random, scene%plane, radius, scene%lower)
       both = random%chance(0.5_wp)
@@ -166,9 +167,9 @@ contains
       modulus = 10.0_wp**random%between(-3.0_wp, 3.0_wp)
       ratio = random%between(-0.9_wp, 0.5_wp)
       body%rigid = .false.
-      body%material = new_material(modulus, ratio, plane)
-      body%datum = datum
-      if (body%circular()) body%datum = body%radius
+      body%elasticity%material = new_material(modulus, ratio, plane)
+      body%elasticity%datum = datum
+      if (body%circular()) body%elasticity%datum = body%radius
    end subroutine make_elastic
 
    subroutine choose_friction(random, scene, sizes, law)

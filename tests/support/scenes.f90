@@ -1,6 +1,7 @@
 !> Scenes of several suites: the dissertation's cylinder and punch on a half-plane.
 module test_scenes
    use mfv_body
+   use mfv_geometry
    use mfv_compliance, only: coupling_full
    use test_friction, only: coulomb_friction, no_friction
    use mfv_kinds, only: wp
@@ -27,17 +28,17 @@ contains
 
       select case (shape)
       case (shape_disk)
-         self = new_disk(body_radius)
+         self = new_body(new_disk(body_radius))
       case (shape_hole)
-         self = new_hole(body_radius)
+         self = new_body(new_hole(body_radius))
       case default
-         self = new_half_plane_body()
+         self = new_body(new_half_plane_surface())
       end select
       if (.not. present(modulus)) return
       self%rigid = .false.
-      self%material = new_material(modulus, ratio, plane_strain)
-      self%datum = 1.0_wp
-      if (self%circular()) self%datum = self%radius
+      self%elasticity%material = new_material(modulus, ratio, plane_strain)
+      self%elasticity%datum = 1.0_wp
+      if (self%circular()) self%elasticity%datum = self%radius
    end function body
 
    !> Two bodies on intervals over [-half_width, half_width] of the surface; 0: automatic.
@@ -63,8 +64,8 @@ contains
       type(scene_type) :: scene
 
       scene = base(nodes, half_width, mu, coupling)
-      scene%upper = new_disk(radius)
-      scene%lower%datum = radius
+      scene%upper = new_body(new_disk(radius))
+      scene%lower%elasticity%datum = radius
       scene%mesh%parabolic = .true.
    end function cylinder
 
@@ -77,8 +78,8 @@ contains
       type(scene_type) :: scene
 
       scene = base(nodes, punch, mu, coupling)
-      scene%upper = new_flat_punch(punch)
-      scene%lower%datum = punch
+      scene%upper = new_body(new_flat_punch(punch))
+      scene%lower%elasticity%datum = punch
    end function flat_punch
 
    function base(nodes, half_width, mu, coupling) result(scene)

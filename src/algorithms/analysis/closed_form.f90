@@ -1,6 +1,5 @@
 !> The closed form of a scene and its load history so far, evaluated on its mesh, for comparison in pictures and tests.
 module mfv_closed_form
-   use mfv_body, only: shape_flat_punch, shape_half_plane
    use mfv_compliance, only: block_up, block_wt
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_approach, motion_shift, motion_rotation
@@ -50,11 +49,11 @@ contains
          if (any(abs(model%worn) > 0.0_wp)) return
          if (simulation%load_summary%controlled(motion_rotation) .and. .not. (is_hertz(scene) .and. model%rolls())) return
          form%indenter = indenter_of(scene)
-         if (.not. form%indenter%is_flat() .and. .not. any([scene%lower%shape, scene%upper%shape] == shape_flat_punch)) then
+         if (.not. form%indenter%is_flat() .and. .not. (scene%lower%has_sharp_ends() .or. scene%upper%has_sharp_ends())) then
             form%half_width = form%indenter%half_width(0.5_wp*force/scene%modulus())
             if (form%half_width > widest(scene)) return
             call add_pressure(form, simulation)
-         else if (scene%lower%shape == shape_half_plane .and. scene%upper%shape == shape_flat_punch &
+         else if (scene%lower%is_straight() .and. scene%upper%has_sharp_ends() &
                   .and. scene%upper%rigid) then
             form%half_width = scene%upper%to
             form%pressure = flat_punch_pressure(model%x, force, form%half_width)
@@ -139,8 +138,8 @@ contains
    pure logical function is_hertz(scene)
       type(scene_type), intent(in) :: scene
 
-      is_hertz = (scene%lower%circular() .or. scene%lower%shape == shape_half_plane) .and. &
-                 (scene%upper%circular() .or. scene%upper%shape == shape_half_plane) .and. scene%curvature() > 0.0_wp
+      is_hertz = (scene%lower%circular() .or. scene%lower%is_straight()) .and. &
+                 (scene%upper%circular() .or. scene%upper%is_straight()) .and. scene%curvature() > 0.0_wp
    end function is_hertz
 
    !> Whether Dundurs' beta vanishes: both bodies of one material. Different shapes couple by the order of a/R only.
@@ -148,7 +147,7 @@ contains
       type(scene_type), intent(in) :: scene
       real(wp), parameter :: none = 1.0e-12_wp
 
-      alike = abs(scene%dundurs_beta()) < none
+      alike = abs(scene%beta()) < none
    end function alike
 
    !> Monotonic pressing with friction from the start and Goodman's coupling.
@@ -156,7 +155,7 @@ contains
       type(simulation_type), intent(in) :: simulation
 
       associate (model => simulation%contact%model)
-         is_spence = (is_hertz(model%scene) .or. model%scene%upper%shape == shape_flat_punch) .and. &
+         is_spence = (is_hertz(model%scene) .or. model%scene%upper%has_sharp_ends()) .and. &
                      model%compliance%elastic_block(block_up) .and. &
                      model%scene%friction%is_coulomb() .and. model%tangential .and. .not. alike(model%scene)
       end associate
@@ -171,12 +170,12 @@ contains
                  force => simulation%contact%state%fields%force(motion_approach))
          if (is_hertz(scene)) then
             form%shear = spence_cylinder_shear(x, force, form%half_width, scene%friction%static%largest(), &
-                                               abs(scene%dundurs_beta()))
+                                               abs(scene%beta()))
          else
             form%shear = spence_flat_punch_shear(x, force, form%half_width, scene%friction%static%largest(), &
-                                                 abs(scene%dundurs_beta()))
+                                                 abs(scene%beta()))
          end if
-         form%shear = sign(1.0_wp, scene%dundurs_beta())*form%shear
+         form%shear = sign(1.0_wp, scene%beta())*form%shear
          form%shear_source = 'Spence 1973; dissertation eqs. 3.4 to 3.6, corrected'
       end associate
    end subroutine add_spence

@@ -2,7 +2,7 @@
 !> (mfv_error_bar).
 module mfv_discretisation_error
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-   use mfv_body, only: body_type, shape_matrix, shape_profile
+   use mfv_body, only: body_type
    use mfv_circle, only: kernel_fourier
    use mfv_closed_form, only: alike
    use mfv_compliance, only: block_up, block_wt
@@ -42,7 +42,7 @@ contains
    pure logical function has_coarser_meshes(scene)
       type(scene_type), intent(in) :: scene
 
-      has_coarser_meshes = scene%lower%shape /= shape_matrix
+      has_coarser_meshes = .not. scene%lower%is_matrix()
    end function has_coarser_meshes
 
    !> Estimate the discretisation error of a finished simulation, into simulation%estimate. `observer` monitors the runs on
@@ -121,7 +121,7 @@ contains
       associate (scene => model%scene, behaviour => observables(place)%error)
          is_smooth = any(behaviour == [error_load, error_smooth, error_pressure, error_shear])
          if (allocated(scene%friction%law)) is_smooth = is_smooth .and. scene%friction%is_proportional()
-         if (behaviour == error_pressure) is_smooth = is_smooth .and. all([scene%lower%shape, scene%upper%shape] /= shape_profile)
+         if (behaviour == error_pressure) is_smooth = is_smooth .and. .not. (scene%lower%is_sampled() .or. scene%upper%is_sampled())
          if (any(behaviour == [error_pressure, error_shear]) .and. index(observables(place)%name, 'largest_') == 1) &
             is_smooth = is_smooth .and. .not. (model%tangential .and. pressing_shears(model))
          ! It is that of an edge, mostly.
@@ -209,7 +209,7 @@ contains
       real(wp) :: intervals
 
       fits = .true.
-      if (body%rigid .or. .not. body%circular() .or. body%kernel /= kernel_fourier) return
+      if (.not. body%deforms_as_circle() .or. body%elasticity%kernel /= kernel_fourier) return
       if (.not. scene%mesh%half_width > 0.0_wp) return
       intervals = pi*body%radius*nodes/scene%mesh%half_width
       fits = abs(intervals - anint(intervals)) <= whole*intervals

@@ -2,7 +2,7 @@
 !> than the mesh has nodes, rounded edges, slip zones. Warnings and error bars take it from here.
 module mfv_resolution
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-   use mfv_body, only: body_type, shape_matrix, shape_profile, shape_rounded_punch
+   use mfv_body, only: body_type
    use mfv_contact_model, only: needs_equal_intervals
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
@@ -222,7 +222,7 @@ contains
       real(wp) :: slope
       integer :: n
 
-      if (body%shape /= shape_profile) return
+      if (.not. body%is_sampled()) return
       n = size(body%position)
       slope = sum(abs(body%height(2:) - body%height(:n - 1)))/(body%position(n) - body%position(1))
       if (slope > steep) advice = advice//'check height_scale of the '//name//' body, whose heights change by '// &
@@ -265,7 +265,7 @@ contains
       points = 0
       associate (model => simulation%contact%model, state => simulation%contact%state)
          peak = maxval(state%fields%pressure)
-         if (merge(model%scene%upper%shape, model%scene%lower%shape, upper) /= shape_profile .or. .not. peak > 0.0_wp) return
+         if (.not. merge(model%scene%upper%is_sampled(), model%scene%lower%is_sampled(), upper) .or. .not. peak > 0.0_wp) return
          if (upper) then
             call find_missed(model%scene%upper, model%x, left, fraction, height)
          else
@@ -297,7 +297,7 @@ contains
       associate (model => simulation%contact%model, state => simulation%contact%state)
          body = model%scene%lower
          if (upper) body = model%scene%upper
-         if (body%shape /= shape_rounded_punch) return
+         if (.not. body%flat_half_width > 0.0_wp) return
          call find_zone_edges(model, state, edges)
          width = 0.5_wp*(edges%contact_right - edges%contact_left) - body%flat_half_width
          interval = minval(model%width, mask=in_contact(state%status))
@@ -342,7 +342,7 @@ contains
       if (nodes == 0) text = 'a slip zone has no node: it is narrower than the mesh resolves'
       remedy = trim(needed_mesh(simulation%contact%model, simulation%contact%state, width, resolved_nodes))
       associate (scene => simulation%contact%model%scene)
-         if (.not. (allocated(scene%mesh%ends) .or. scene%lower%shape == shape_matrix .or. needs_equal_intervals(scene))) &
+         if (.not. (allocated(scene%mesh%ends) .or. scene%lower%is_matrix() .or. needs_equal_intervals(scene))) &
             remedy = "refine='edges' in &mesh, or "//remedy
       end associate
       call add_unresolved(unresolved, names(2:), text//' ('//to_text(width/interval, 2)//' intervals)', 'use '//remedy//' for '// &

@@ -1,7 +1,7 @@
 !> Warnings about the undeformed surfaces in contact: ends, shape between the points of a profile, slope.
 module mfv_surface_warnings
-   use mfv_body, only: body_type, interpolation_cubic, interpolation_linear, shape_flat_punch, shape_power, shape_profile, &
-                       shape_wedge
+   use mfv_body, only: body_type
+   use mfv_geometry, only: interpolation_cubic, interpolation_linear
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: pi, wp
    use mfv_motions, only: motion_approach
@@ -31,9 +31,9 @@ contains
       contact = touched(simulation)
       if (.not. any(contact)) return
       call check_end
-      if (body%shape == shape_profile) call check_interpolation
+      if (body%is_sampled()) call check_interpolation
       if (body%dropouts > 0) call warn_of_dropouts
-      if (.not. any(body%shape == [shape_power, shape_wedge]) .or. body%exponent > 1.0_wp) return
+      if (.not. body%is_pointed()) return
       angle = atan(body%coefficient)*180.0_wp/pi
       if (angle > largest_angle) call add_text(warnings, 'the flanks of the '//name//' body rise by '//to_text(angle, 3)// &
                                                ' degrees; the half-plane compliance is inaccurate beyond '// &
@@ -61,7 +61,7 @@ contains
                if (.not. contact(i)) cycle
                if (any(contact(max(i + side, 1):min(i + side, size(contact))))) cycle
                if (.not. ends_at(i, side)) cycle
-               if (body%shape == shape_flat_punch) then
+               if (body%has_sharp_ends()) then
                   if (.not. misses_corner(i, side)) cycle
                   call add_text(warnings, 'no interval of the mesh ends at the corner of the '//name//' body, x = '// &
                                 to_text(corner(side))//': the contact ends at x = '//to_text(end_of(i, side), 4)// &
@@ -110,7 +110,7 @@ contains
             if (node + side >= 1 .and. node + side <= model%nodes()) arc = model%arc(node + side)
             ends_at = .not. model%scene%touchable(arc) .and. &
                       (.not. body%covers(model%scene%x_of_arc(arc), model%scene%mesh%parabolic) .or. &
-                       (body%circular() .and. .not. body%rigid .and. abs(arc) >= 0.5_wp*pi*body%radius))
+                       (body%deforms_as_circle() .and. abs(arc) >= 0.5_wp*pi*body%radius))
          end associate
       end function ends_at
 

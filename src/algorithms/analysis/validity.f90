@@ -1,7 +1,7 @@
 !> Warnings where the assumptions of the model do not hold.
 module mfv_validity
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use mfv_body, only: body_type, shape_half_plane, shape_matrix
+   use mfv_body, only: body_type
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
    use mfv_kinds, only: pi, wp
@@ -152,7 +152,7 @@ contains
 
       if (.not. scene%has_datum()) return
       if (simulation%contact%state%contact_nodes() == 0) return
-      if (scene%lower%datum_of_case .or. scene%upper%datum_of_case) &
+      if (scene%lower%elasticity%datum_of_case .or. scene%upper%elasticity%datum_of_case) &
          call add_text(warnings, 'the datum of the displacements, '//to_text(scene%datum(), 4)//', is the half-width of the '// &
                        'contact at the largest normal_force of this case, or else of its mesh: give datum to compare '// &
                        'approaches, shifts and stiffnesses with those of other cases')
@@ -223,7 +223,7 @@ contains
          if (scene%mesh%radial .or. .not. slip%farthest > small_slide*slip%half_width) return
          if (scene%wear%acts()) then
             consequence = 'both surfaces wear over the contact only, not over the path of the slide'
-         else if (scene%lower%shape == shape_half_plane .or. scene%upper%shape == shape_half_plane .or. &
+         else if (scene%lower%is_straight() .or. scene%upper%is_straight() .or. &
                   (scene%lower%circular() .and. scene%upper%circular())) then
             consequence = 'positions along the bodies, such as those of stresses, are off by up to the slide'
          else
@@ -254,9 +254,9 @@ contains
       real(wp), parameter :: almost_every = 0.8_wp
       integer :: i, n
 
-      if (body%shape /= shape_matrix) return
+      if (.not. body%is_matrix()) return
       n = size(body%position) - 2
-      if (count([(body%matrix(i, i + 1) < body%matrix(i, i + 2), i=1, n)]) > almost_every*n .and. n > 1) &
+      if (count([(body%elasticity%matrix(i, i + 1) < body%elasticity%matrix(i, i + 2), i=1, n)]) > almost_every*n .and. n > 1) &
          call add_text(warnings, 'the matrix seems to be in the wrong order, because neighbouring rows couple weakly: rows and '// &
                        'columns must have all normal components first, then all tangential ones')
    end subroutine check_order

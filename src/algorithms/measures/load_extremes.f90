@@ -261,7 +261,7 @@ contains
          bulk = state%fields%motion(bulk_motions(side))
          ! A circle is in tension also beside a contact without shear, in proportion to the force.
          hoop = 0.0_wp
-         if (body%circular()) hoop = state%fields%force(motion_approach)/(pi*body%radius)
+         if (body%deforms_as_circle()) hoop = state%fields%force(motion_approach)/(pi*body%radius)
          associate (stress => bulk + merge(2.0_wp, -2.0_wp, side == 1)*samples%integral - samples%pressure)
             estimates(candidate_tension(side)) = max(bulk, 0.0_wp, maxval(stress)) + hoop
             if (body%yield_strength > 0.0_wp) &
@@ -359,7 +359,7 @@ contains
 
       sign = merge(1.0_wp, -1.0_wp, side == 1)
       out_of_plane = 0.0_wp
-      if (model%scene%plane == plane_strain) out_of_plane = body%material%poisson_ratio
+      if (model%scene%plane == plane_strain) out_of_plane = body%elasticity%material%poisson_ratio
       largest = of_components(bulk, 0.0_wp, 0.0_wp)
       do i = 1, size(samples%arc)
          largest = max(largest, of_components(stress(i), -samples%pressure(i), samples%shear(i)))

@@ -8,7 +8,6 @@
 !> same far field for c = 2 K/M: for small forces, c/a = Q/(2 mu P). It dissipates pi mu L M c^3/(24 m), m the contact
 !> modulus.
 module mfv_slip_zones
-   use mfv_body, only: shape_matrix
    use mfv_compliance, only: block_up, coupling_full
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
@@ -161,7 +160,7 @@ contains
       integer :: edge, node(0:last), i
 
       width = 0.0_wp
-      if (model%scene%coupling == coupling_full .and. abs(model%scene%dundurs_beta()) > similar) return
+      if (model%scene%coupling == coupling_full .and. abs(model%scene%beta()) > similar) return
       call find_zone_edges(model, state, edges)
       edge = findloc(in_contact(state%status), .true., dim=1, back=side > 0)
       node = [(edge - side*i, i=0, last)]
@@ -309,7 +308,7 @@ contains
 
          if (.not. model%compliance%has_block(block_up) .or. .not. model%scene%modulus() > 0.0_wp) return
          half_width = 0.5_wp*sum(model%width(first:last))
-         ratio = spence_stick_ratio(model%scene%friction%static%largest(), model%scene%dundurs_beta())
+         ratio = spence_stick_ratio(model%scene%friction%static%largest(), model%scene%beta())
          width = half_width*(1.0_wp - ratio)
          if (width > negligible_pressing*half_width .and. width <= widest_hidden*contact_interval(model, state)) &
             missing = model%scene%friction%static%largest()**2/model%scene%modulus()*state%fields%force(motion_approach)**2 &
@@ -455,7 +454,7 @@ contains
       real(wp) :: nodes, digits
 
       words = 'intervals of '//to_text(width/(wanted + margin), 2)
-      if (model%scene%lower%shape == shape_matrix) return
+      if (model%scene%lower%is_matrix()) return
       nodes = model%scene%mesh%nodes*(wanted + margin)*contact_interval(model, state)/width
       digits = 10.0_wp**(floor(log10(nodes)) - 1)
       if (nodes < countable) words = 'about '//to_text(nint(digits*ceiling(nodes/digits)))//' nodes ('//trim(words)//')'

@@ -92,7 +92,7 @@ contains
       call state_interior(model, state, upper, interior, available)
       if (.not. available) return
       associate (body => interior%body)
-         if (.not. body%circular()) then
+         if (.not. body%deforms_as_circle()) then
             stress = interior%surface_stress(x)
          else if (abs(x) <= body%radius) then
             stress = interior%surface_stress(body%radius*asin(x/body%radius))

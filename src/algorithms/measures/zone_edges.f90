@@ -12,7 +12,6 @@
 !> whose exponent is larger by one.
 module mfv_zone_edges
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
-   use mfv_body, only: shape_matrix
    use mfv_compliance, only: block_wp, block_wt
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
@@ -564,8 +563,8 @@ contains
 
       exponent_shift = 0.0_wp
       if (.not. model%compliance%elastic_block(block_wt)) return
-      beta = model%scene%dundurs_beta()
-      if (model%scene%lower%shape == shape_matrix) beta = local_beta(model, node)
+      beta = model%scene%beta()
+      if (model%scene%lower%is_matrix()) beta = local_beta(model, node)
       exponent_shift = root_shift(beta*ratio)
    end function exponent_shift
 

@@ -6,7 +6,7 @@
 !> gaps are along the radii of the hole, and tractions are per unit of its arc. On unequal intervals gaps are means, as
 !> displacements are.
 module mfv_contact_model
-   use mfv_body, only: body_type, gap_between, radial_gap_between, shape_disk, shape_hole, shape_matrix
+   use mfv_body, only: body_type, gap_between, radial_gap_between
    use mfv_body_pair, only: body_pair_type, new_body_pair
    use mfv_circle, only: circle_intervals, kernel_fourier
    use mfv_compliance, only: compliance_type
@@ -123,13 +123,13 @@ contains
       integer :: circle
 
       nodes = scene%mesh%nodes
-      growing = .not. (allocated(scene%mesh%ends) .or. scene%lower%shape == shape_matrix)
+      growing = .not. (allocated(scene%mesh%ends) .or. scene%lower%is_matrix())
       if (allocated(scene%mesh%ends)) then
          nodes = size(scene%mesh%ends) - 1
          interval = (scene%mesh%ends(nodes + 1) - scene%mesh%ends(1))/nodes
-      else if (scene%lower%shape == shape_matrix) then
+      else if (scene%lower%is_matrix()) then
          nodes = size(scene%lower%position)
-         interval = sum(scene%lower%width)/nodes
+         interval = sum(scene%lower%elasticity%width)/nodes
       else if (scene%mesh%whole_circle) then
          interval = 2.0_wp*pi*scene%arc_radius()/nodes
          circle = nodes
@@ -148,7 +148,7 @@ contains
    pure logical function can_choose_mesh(scene)
       type(scene_type), intent(in) :: scene
 
-      can_choose_mesh = scene%lower%shape == shape_matrix .or. allocated(scene%mesh%ends) .or. &
+      can_choose_mesh = scene%lower%is_matrix() .or. allocated(scene%mesh%ends) .or. &
                         scene%mesh%half_width > 0.0_wp .or. scene%mesh%whole_circle .or. &
                         min(scene%lower%half_extent(), scene%upper%half_extent()) < huge(1.0_wp)
       if (.not. can_choose_mesh) can_choose_mesh = largest_half_width(scene, huge(1.0_wp)) > 0.0_wp
@@ -171,7 +171,7 @@ contains
       integer :: i, nodes
       logical :: growing
 
-      if (scene%lower%shape == shape_matrix) then
+      if (scene%lower%is_matrix()) then
          has_touchable_node = any(scene%touchable(scene%lower%position))
          return
       else if (allocated(scene%mesh%ends)) then
@@ -199,7 +199,7 @@ contains
       type(scene_type), intent(in) :: scene
 
       needs_equal_intervals = scene%arc_radius() > 0.0_wp .and. &
-                              any([scene%lower%kernel, scene%upper%kernel] == kernel_fourier)
+                              any([scene%lower%elasticity%kernel, scene%upper%elasticity%kernel] == kernel_fourier)
    end function needs_equal_intervals
 
    !> Larger stiffnesses, force/length^2, are ratios to a displacement of round-off.
@@ -481,9 +481,9 @@ contains
       integer :: i, n
 
       n = self%nodes()
-      if (self%scene%lower%shape == shape_matrix) then
+      if (self%scene%lower%is_matrix()) then
          self%arc = self%scene%lower%position
-         self%width = self%scene%lower%width
+         self%width = self%scene%lower%elasticity%width
       else if (allocated(self%scene%mesh%ends)) then
          self%arc = middles(self%scene%mesh%ends)
          self%width = self%scene%mesh%ends(2:) - self%scene%mesh%ends(:n)
@@ -561,9 +561,9 @@ contains
       self%tangential_arm(:, motion_rotation) = self%centre_height()
       associate (scene => self%scene)
          if (scene%can_have_bulk_stress(.false.)) &
-            self%tangential_arm(:, motion_lower_bulk) = -0.5_wp/scene%lower%material%plane_modulus()*self%arc
+            self%tangential_arm(:, motion_lower_bulk) = -scene%lower%elasticity%strain_by_bulk_stress()*self%arc
          if (scene%can_have_bulk_stress(.true.)) &
-            self%tangential_arm(:, motion_upper_bulk) = 0.5_wp/scene%upper%material%plane_modulus()*self%arc
+            self%tangential_arm(:, motion_upper_bulk) = scene%upper%elasticity%strain_by_bulk_stress()*self%arc
       end associate
    end subroutine place_arms
 
@@ -575,7 +575,7 @@ contains
 
       centre_height = 0.0_wp
       associate (lower => self%scene%lower, upper => self%scene%upper)
-         if (upper%circular() .and. .not. (upper%shape == shape_hole .and. lower%shape == shape_disk)) then
+         if (upper%circular() .and. .not. (upper%is_hole() .and. lower%is_disk())) then
             centre_height = sign(upper%radius, upper%curvature())
          else if (lower%circular()) then
             centre_height = -sign(lower%radius, lower%curvature())

@@ -1,8 +1,9 @@
 !> A scene: bodies, mesh, friction, load history and method. No files, no solution.
 module mfv_scene
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use mfv_body, only: body_type, shape_matrix, shape_profile
+   use mfv_body, only: body_type
    use mfv_compliance, only: coupling_full
+   use mfv_elasticity, only: near_field_type
    use mfv_friction, only: friction_type
    use mfv_interior, only: has_interior, interior_type, new_interior
    use mfv_kinds, only: pi, wp
@@ -141,9 +142,10 @@ module mfv_scene
       procedure :: fault
       procedure :: tangential
       procedure :: moves
+      procedure :: near_field
       procedure :: modulus
       procedure :: curvature
-      procedure :: dundurs_beta
+      procedure :: beta
       procedure :: has_datum
       procedure :: datum
       procedure :: arc_radius
@@ -222,7 +224,7 @@ contains
       real(wp) :: half_width, pressure, usual, interval
 
       nodes = 0
-      if (all([self%lower%shape, self%upper%shape] /= shape_profile)) return
+      if (.not. (self%lower%is_sampled() .or. self%upper%is_sampled())) return
       half_width = min(self%lower%half_extent(), self%upper%half_extent())
       if (self%mesh%half_width > 0.0_wp) half_width = min(half_width, self%mesh%half_width)
       if (.not. allocated(self%steps) .or. .not. self%modulus() > 0.0_wp .or. half_width >= huge(1.0_wp)) return
@@ -286,17 +288,27 @@ contains
       end do
    end function moves
 
+   !> Constants of the near field of both bodies together: A and At are sums, B is the difference. Those of a body without
+   !> material are 0.
+   pure type(near_field_type) function near_field(self) result(both)
+      class(scene_type), intent(in) :: self
+      type(near_field_type) :: upper
+
+      both = self%lower%elasticity%near_field()
+      upper = self%upper%elasticity%near_field()
+      both%normal = both%normal + upper%normal
+      both%tangential = both%tangential + upper%tangential
+      both%coupling = both%coupling - upper%coupling
+   end function near_field
+
    !> Contact modulus of both bodies, force/length^2: 1/m = 1/m1 + 1/m2 with m = 4 G/(kappa + 1) of each elastic body; A in
    !> dissertation eq. 6.1, corrected for a misprint, is 1/m. Zero if a body has no material.
    pure real(wp) function modulus(self)
       class(scene_type), intent(in) :: self
-      real(wp) :: flexibility
+      type(near_field_type) :: both
 
-      flexibility = 0.0_wp
-      if (self%lower%material%shear_modulus > 0.0_wp) flexibility = 1.0_wp/self%lower%material%plane_modulus()
-      if (self%upper%material%shear_modulus > 0.0_wp) flexibility = flexibility + 1.0_wp/self%upper%material%plane_modulus()
-      modulus = 0.0_wp
-      if (flexibility > 0.0_wp) modulus = 1.0_wp/flexibility
+      both = self%near_field()
+      modulus = both%modulus()
    end function modulus
 
    !> Relative curvature K = 1/R1 + 1/R2 of dissertation eq. 6.1, 1/length.
@@ -306,50 +318,44 @@ contains
       curvature = self%lower%curvature() + self%upper%curvature()
    end function curvature
 
-   !> Dundurs' second parameter beta, eq. 6.1: positive if the coupling of the lower body is stronger.
-   pure real(wp) function dundurs_beta(self)
+   !> Dundurs' second parameter, see mfv_elasticity.
+   pure real(wp) function beta(self)
       class(scene_type), intent(in) :: self
+      type(near_field_type) :: both
 
-      dundurs_beta = 0.0_wp
-      if (self%lower%material%shear_modulus > 0.0_wp) dundurs_beta = share(self%lower)
-      if (self%upper%material%shear_modulus > 0.0_wp) dundurs_beta = dundurs_beta - share(self%upper)
-
-   contains
-
-      pure real(wp) function share(body)
-         type(body_type), intent(in) :: body
-
-         share = self%modulus()*(body%material%kolosov - 1.0_wp)/(4.0_wp*body%material%shear_modulus)
-      end function share
-   end function dundurs_beta
+      both = self%near_field()
+      beta = both%beta()
+   end function beta
 
    !> Whether the displacements are measured at a datum inside of bodies: half-planes and the like, not circles.
    elemental logical function has_datum(self)
       class(scene_type), intent(in) :: self
 
-      has_datum = .not. (self%lower%circular() .or. self%upper%circular() .or. self%lower%shape == shape_matrix)
+      has_datum = .not. (self%lower%circular() .or. self%upper%circular() .or. self%lower%is_matrix())
    end function has_datum
 
    !> Datum of the displacements of both bodies together, length: the mean of the logarithms of their datums, weighted with their
    !> flexibilities.
    pure real(wp) function datum(self)
       class(scene_type), intent(in) :: self
-      real(wp) :: logarithm
+      real(wp) :: flexibility(2), logarithm(2)
 
+      flexibility = [of_body(self%lower), of_body(self%upper)]
       logarithm = 0.0_wp
-      if (self%lower%material%shear_modulus > 0.0_wp) logarithm = weighed(self%lower)
-      if (self%upper%material%shear_modulus > 0.0_wp) logarithm = logarithm + weighed(self%upper)
-      datum = exp(logarithm)
-      if (.not. self%upper%material%shear_modulus > 0.0_wp) datum = self%lower%datum
-      if (.not. self%lower%material%shear_modulus > 0.0_wp) datum = self%upper%datum
+      where (flexibility > 0.0_wp) logarithm = log([self%lower%elasticity%datum, self%upper%elasticity%datum])
+      datum = exp(sum(flexibility*logarithm)/sum(flexibility))
+      if (.not. flexibility(2) > 0.0_wp) datum = self%lower%elasticity%datum
+      if (.not. flexibility(1) > 0.0_wp) datum = self%upper%elasticity%datum
 
    contains
 
-      pure real(wp) function weighed(body)
+      pure real(wp) function of_body(body)
          type(body_type), intent(in) :: body
+         type(near_field_type) :: constants
 
-         weighed = self%modulus()/body%material%plane_modulus()*log(body%datum)
-      end function weighed
+         constants = body%elasticity%near_field()
+         of_body = constants%normal
+      end function of_body
    end function datum
 
    !> Radius of the circle of the nodes, length: with radial normals that of the hole, along whose radii gaps are measured; else
@@ -360,8 +366,8 @@ contains
       arc_radius = max(self%lower%radius, self%upper%radius)
       if (self%mesh%radial) return
       arc_radius = 0.0_wp
-      if (self%upper%circular() .and. .not. self%upper%rigid) arc_radius = self%upper%radius
-      if (.not. self%lower%circular() .or. self%lower%rigid) return
+      if (self%upper%deforms_as_circle()) arc_radius = self%upper%radius
+      if (.not. self%lower%deforms_as_circle()) return
       if (.not. arc_radius > 0.0_wp .or. self%lower%radius < arc_radius) arc_radius = self%lower%radius
    end function arc_radius
 
@@ -399,9 +405,9 @@ contains
       logical, intent(in) :: upper
 
       if (upper) then
-         can_have_bulk_stress = has_interior(self%upper) .and. .not. self%upper%circular()
+         can_have_bulk_stress = has_interior(self%upper) .and. .not. self%upper%deforms_as_circle()
       else
-         can_have_bulk_stress = has_interior(self%lower) .and. .not. self%lower%circular()
+         can_have_bulk_stress = has_interior(self%lower) .and. .not. self%lower%deforms_as_circle()
       end if
    end function can_have_bulk_stress
 
@@ -435,7 +441,7 @@ contains
          end do
       end do
       zones%contact = ratio*zones%contact
-      if (self%coupling == coupling_full) zones%beta = self%dundurs_beta()
+      if (self%coupling == coupling_full) zones%beta = self%beta()
       if (present(fewest_elements)) zones%fewest_elements = fewest_elements
       if (present(wanted)) allocate (zones%wanted, source=wanted)
       if (upper) then

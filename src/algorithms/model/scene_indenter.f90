@@ -1,7 +1,8 @@
 !> The gap of a scene in terms of closed forms, and the contact that they expect.
 module mfv_scene_indenter
-   use mfv_body, only: body_type, shape_flat_punch, shape_half_plane, shape_matrix, shape_power, shape_profile, &
-                       shape_rounded_punch, shape_wedge
+   use mfv_body, only: body_type
+   use mfv_geometry, only: shape_flat_punch, shape_half_plane, shape_matrix, shape_power, shape_profile, &
+                           shape_rounded_punch, shape_wedge
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_approach, control_force, control_displacement
    use mfv_reference_indenter, only: flat_indenter, indenter_type, power_indenter, rounded_punch_indenter

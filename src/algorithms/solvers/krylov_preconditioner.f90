@@ -32,7 +32,7 @@ module mfv_krylov_preconditioner
       real(wp), allocatable :: kernel(:)
       !> What the entries of the blocks next to the diagonal, and all of those of half-planes, have beyond the kernel.
       real(wp), public :: constant = 0.0_wp
-      logical :: is_half_plane = .false.
+      logical :: is_homogeneous = .false.
       !> (Both allocatable: otherwise gfortran 12 does not free the components of the second.)
       type(block_type), allocatable :: contact, held
       !> Softness of the held nodes, shape (held), if any is nonzero; weights of the levels, shape (held, 0 to levels), and the
@@ -77,7 +77,7 @@ contains
          self%kernel(distance + 1) = (max(near(1, 1), least) - factor*log_kernel(2.0_wp*distance))/unit
       end do
       self%constant = near(1, 1)/unit - self%kernel(1)
-      self%is_half_plane = compliance%is_half_plane
+      self%is_homogeneous = compliance%is_homogeneous
       if (allocated(self%contact)) deallocate (self%contact, self%held)
       allocate (self%contact, self%held)
    end subroutine prepare
@@ -86,7 +86,7 @@ contains
    pure logical function is_exact(self)
       class(krylov_preconditioner_type), intent(in) :: self
 
-      is_exact = self%is_half_plane .and. .not. self%soft
+      is_exact = self%is_homogeneous .and. .not. self%soft
       if (is_exact) is_exact = self%contact%inverse%group_count() <= 1 .and. self%held%inverse%group_count() <= 1
    end function is_exact
 

@@ -2,7 +2,6 @@
 module mfv_linear_solvers
    use mfv_augmented_system, only: augmented_system_type
    use mfv_automatic_system, only: automatic_system_type
-   use mfv_body, only: shape_matrix
    use mfv_compliance, only: block_wt
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_system, only: contact_system_type
@@ -27,7 +26,7 @@ contains
       integer :: solver
 
       solver = model%scene%method%linear_solver
-      if (solver == solver_auto .and. (model%scene%lower%shape == shape_matrix .or. allocated(model%scene%mesh%ends) .or. &
+      if (solver == solver_auto .and. (model%scene%lower%is_matrix() .or. allocated(model%scene%mesh%ends) .or. &
                                        model%nodes() <= most_reduced(model))) solver = solver_reduced
       select case (solver)
       case (solver_auto)
@@ -69,7 +68,7 @@ contains
          method%stepping = stepping_event
          if (.not. proportional) return
          if (method%accuracy > 0.0_wp .and. model%nodes() >= merge(least_coupled_leap, least_leap, coupled) .or. &
-             .not. coupled .and. model%compliance%is_half_plane .and. model%nodes() >= least_exact) method%stepping = stepping_leap
+             .not. coupled .and. model%compliance%is_homogeneous .and. model%nodes() >= least_exact) method%stepping = stepping_leap
       end associate
    end subroutine choose_stepping
 

@@ -468,7 +468,7 @@ contains
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: interval
 
-      slips_one_way = path%model%compliance%is_half_plane .and. has_constant_pressures(path, interval)
+      slips_one_way = path%model%compliance%is_homogeneous .and. has_constant_pressures(path, interval)
    end function slips_one_way
 
    !> Statuses of the nodes at the friction limit for the given rates, as `wanted`, shape (nodes): nodes that slip back stick, and

@@ -1,7 +1,9 @@
 !> The bodies of a case, from its text.
 module mfv_body_reader
-   use mfv_body
+   use mfv_body, only: body_type, new_body
+   use mfv_geometry
    use mfv_circle, only: kernel_fourier
+   use mfv_elasticity, only: as_half_plane, elasticity_half_plane, elasticity_own
    use mfv_error, only: error_type
    use mfv_key_reader
    use mfv_kinds, only: pi, wp
@@ -70,7 +72,14 @@ contains
       if (shape == 'profile') allowed = allowed//' interpolation position_scale height_scale level centred'
       if (shape /= 'matrix' .and. .not. rigid) allowed = allowed//' shear_modulus youngs_modulus poisson_ratio '// &
                                                          'yield_strength datum'
-      if ((shape == 'disk' .or. shape == 'hole') .and. .not. rigid) allowed = allowed//' kernel harmonics'
+      if ((shape == 'disk' .or. shape == 'hole') .and. .not. rigid) then
+         allowed = allowed//' elasticity'
+         if (reader%choice('body', body, 'elasticity') == elasticity_own) then
+            allowed = allowed//' kernel harmonics'
+         else
+            shape = shape//" with elasticity='half_plane'"
+         end if
+      end if
       keys = reader%catalogue%names('body')
       do i = 1, size(keys)
          if (.not. reader%has('body', body, keys(i)%text) .or. has_word(allowed, keys(i)%text)) cycle
@@ -113,13 +122,14 @@ contains
       call read_shape(reader, number, body, error)
       if (allocated(error)) return
       body%rigid = reader%logical_value('body', number, 'rigid')
-      if (body%rigid .or. body%shape == shape_matrix) return
+      if (body%rigid .or. body%is_matrix()) return
       call read_material(reader, number, plane, body, error)
       if (allocated(error)) return
+      if (reader%choice('body', number, 'elasticity') == elasticity_half_plane) body%elasticity%kind = as_half_plane
       body%yield_strength = reader%real_value('body', number, 'yield_strength')
-      body%kernel = reader%choice('body', number, 'kernel')
-      body%harmonics = reader%integer_value('body', number, 'harmonics')
-      if (body%harmonics > 0 .and. body%kernel /= kernel_fourier) &
+      body%elasticity%kernel = reader%choice('body', number, 'kernel')
+      body%elasticity%harmonics = reader%integer_value('body', number, 'harmonics')
+      if (body%elasticity%harmonics > 0 .and. body%elasticity%kernel /= kernel_fourier) &
          call reader%complain('body', number, 'harmonics', "has no effect without kernel='fourier'; remove it", error)
    end subroutine read_body
 
@@ -141,19 +151,19 @@ contains
       end do
       select case (shape)
       case ('half_plane')
-         body = new_half_plane_body()
+         body = new_body(new_half_plane_surface())
       case ('disk')
-         body = new_disk(value('radius'))
+         body = new_body(new_disk(value('radius')))
       case ('hole')
-         body = new_hole(value('radius'))
+         body = new_body(new_hole(value('radius')))
       case ('flat_punch')
-         body = new_flat_punch(value('half_width'))
+         body = new_body(new_flat_punch(value('half_width')))
       case ('rounded_punch')
-         body = new_rounded_punch(value('half_width'), value('edge_radius'))
+         body = new_body(new_rounded_punch(value('half_width'), value('edge_radius')))
       case ('wedge')
-         body = new_wedge(tan(degree*value('angle')))
+         body = new_body(new_wedge(tan(degree*value('angle'))))
       case ('power')
-         body = new_power(value('coefficient'), value('exponent'))
+         body = new_body(new_power(value('coefficient'), value('exponent')))
       case default
          call read_body_file(reader, number, body, error)
       end select
@@ -176,6 +186,7 @@ contains
       type(error_type), allocatable :: fault
       character(:), allocatable :: path
       type(trace_type) :: trace
+      type(geometry_type) :: surface
       logical :: in_memory
 
       call find_file(reader, 'body', number, 'file', path, in_memory)
@@ -183,10 +194,11 @@ contains
          call read_trace(reader, number, trace, error)
          if (allocated(error)) return
          if (in_memory) then
-            call read_profile(path, trace, body, fault, reader%data)
+            call read_profile(path, trace, surface, fault, reader%data)
          else
-            call read_profile(path, trace, body, fault)
+            call read_profile(path, trace, surface, fault)
          end if
+         body = new_body(surface)
       else if (in_memory) then
          call reader%data%read_matrix_body(path, body, fault)
       else
@@ -235,7 +247,7 @@ contains
          if (allocated(error)) return
          modulus = reader%real_value('body', number, 'shear_modulus')
       end if
-      body%material = new_material(modulus, ratio, plane)
+      body%elasticity%material = new_material(modulus, ratio, plane)
    end subroutine read_material
 
    !> Error for bodies that do not separate away from the origin.
@@ -270,8 +282,8 @@ contains
       type(scene_type), intent(in) :: scene
       type(error_type), allocatable, intent(out) :: error
 
-      if (scene%lower%shape /= shape_matrix .or. .not. scene%friction%acts()) return
-      if (size(scene%lower%matrix, 1) > size(scene%lower%position)) return
+      if (.not. scene%lower%is_matrix() .or. .not. scene%friction%acts()) return
+      if (size(scene%lower%elasticity%matrix, 1) > size(scene%lower%position)) return
       call reader%complain('body', 1, 'file', 'the matrix has normal components only; friction needs the tangential ones too', &
                            error)
    end subroutine check_matrix
@@ -298,10 +310,10 @@ contains
                               'normal_force nor half_width in &mesh is given', error)
          return
       end do
-      scene%lower%datum = datum(1)
-      scene%upper%datum = datum(2)
-      scene%lower%datum_of_case = of_case(1) .and. .not. scene%lower%rigid
-      scene%upper%datum_of_case = of_case(2) .and. .not. scene%upper%rigid
+      scene%lower%elasticity%datum = datum(1)
+      scene%upper%elasticity%datum = datum(2)
+      scene%lower%elasticity%datum_of_case = of_case(1) .and. .not. scene%lower%rigid
+      scene%upper%elasticity%datum_of_case = of_case(2) .and. .not. scene%upper%rigid
    end subroutine read_datums
 
 end module mfv_body_reader

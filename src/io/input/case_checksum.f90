@@ -29,8 +29,8 @@ contains
          if (allocated(case%scene%steps(i)%path)) call add_to_checksum(transfer(case%scene%steps(i)%path, mold), checksum)
       end do
       ! A product in place of the matrix; every entry contributes.
-      if (.not. allocated(model%scene%lower%matrix)) return
-      associate (matrix => model%scene%lower%matrix)
+      if (.not. allocated(model%scene%lower%elasticity%matrix)) return
+      associate (matrix => model%scene%lower%elasticity%matrix)
          call add_to_checksum(transfer(matmul(matrix, sqrt([(real(i, wp), i=1, size(matrix, 2))])), mold), checksum)
       end associate
    end subroutine find_case_checksum

@@ -1,7 +1,8 @@
 !> All groups and keys of a case: kinds, defaults, ranges and meanings. The reader checks against this list; docs/namelist.md and
 !> `mfv_run --keys` are made from it.
 module mfv_case_keys
-   use mfv_body, only: shape_names
+   use mfv_elasticity, only: elasticity_names
+   use mfv_geometry, only: shape_names
    use mfv_compliance, only: coupling_names
    use mfv_friction, only: friction_law_names
    use mfv_keys
@@ -79,6 +80,8 @@ contains
                     unit='length^(1-exponent)', above=0.0_wp)
       call keys%add('body', 'exponent', kind_real, 'power: exponent of the shape, needed; 1: a wedge, 2: a cylinder', &
                     lower=1.0_wp, upper=100.0_wp)
+      call keys%add('body', 'elasticity', kind_choice, 'how the surface deforms: a disk or hole as such by default, or as a '// &
+                    'half-plane, as all other shapes do', default='own', choices=elasticity_names)
       call keys%add('body', 'kernel', kind_choice, 'elastic disk, hole: closed forms, or the Fourier series', default='exact', &
                     choices='exact fourier')
       call keys%add('body', 'harmonics', kind_integer, "kernel='fourier': terms of the series; if omitted: 4 per "// &

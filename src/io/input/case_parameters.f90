@@ -13,7 +13,6 @@ module mfv_case_parameters
    use mfv_kinds, only: wp
    use mfv_motions, only: motions, user_motions, control_force, control_displacement
    use mfv_namelist, only: parse_namelists
-   use mfv_body, only: shape_matrix
    use mfv_scene, only: algorithm_mfv, scene_type, stepping_leap
    use mfv_simulation, only: simulation_type
    use mfv_status, only: MFV_BAD_ARGUMENT
@@ -209,7 +208,7 @@ contains
       type(scene_type), intent(inout) :: scene
 
       scene%mesh = model%scene%mesh
-      if (allocated(scene%mesh%ends) .or. scene%lower%shape == shape_matrix) return
+      if (allocated(scene%mesh%ends) .or. scene%lower%is_matrix()) return
       scene%mesh%whole_circle = .false.
       scene%mesh%nodes = model%nodes()
       scene%mesh%half_width = model%length()

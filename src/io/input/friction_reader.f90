@@ -1,6 +1,5 @@
 !> The friction of a case, from its text: the law, its coefficients, and the steps in which it acts.
 module mfv_friction_reader
-   use mfv_body, only: shape_matrix
    use mfv_error, only: error_type
    use mfv_friction
    use mfv_friction_law, only: friction_law_type
@@ -217,12 +216,12 @@ contains
       advice = ''
       if (size(given) == 2 .and. .not. any(abs(given - anint(given)) > 0.0_wp)) advice = decimal_point
       nodes = scene%mesh%nodes
-      if (scene%lower%shape == shape_matrix) nodes = size(scene%lower%position)
+      if (scene%lower%is_matrix()) nodes = size(scene%lower%position)
       if (scene%mesh%refined) then
          call reader%complain('friction', 1, key, "one value per node needs refine='none'; use mu_file"//advice, error)
          return
       end if
-      if (scene%lower%shape /= shape_matrix .and. .not. (scene%mesh%half_width > 0.0_wp .or. allocated(scene%mesh%ends))) then
+      if (.not. scene%lower%is_matrix() .and. .not. (scene%mesh%half_width > 0.0_wp .or. allocated(scene%mesh%ends))) then
          call reader%complain('friction', 1, key, 'one value per node needs a mesh with half_width, half_angle or ends'//advice, &
                               error)
       else if (size(scene%friction%static%value) /= nodes) then

@@ -36,19 +36,22 @@ contains
       else if (scene%mesh%radial .and. .not. (scene%lower%circular() .and. scene%upper%circular() .and. &
                                               scene%lower%shape /= scene%upper%shape)) then
          call reader%complain('mesh', 1, 'normals', "must be 'vertical' unless a disk is in a hole", error)
+      else if (scene%mesh%radial .and. .not. (scene%lower%elasticity%is_circle() .and. &
+                                              scene%upper%elasticity%is_circle())) then
+         call reader%complain('mesh', 1, 'normals', "must be 'vertical' with elasticity='half_plane'", error)
       else if (scene%mesh%radial .and. scene%mesh%parabolic) then
          call reader%complain('mesh', 1, 'normals', "must be 'vertical' with gap='parabolic'", error)
       end if
       if (allocated(error)) return
       keys = list_of_words('nodes half_width half_angle ends refine')
       do i = 1, size(keys)
-         if (scene%lower%shape /= shape_matrix .or. .not. reader%has('mesh', 1, keys(i)%text)) cycle
+         if (.not. scene%lower%is_matrix() .or. .not. reader%has('mesh', 1, keys(i)%text)) cycle
          call reader%complain('mesh', 1, keys(i)%text, 'has no effect for a matrix, which has its own nodes; remove it', error)
          return
       end do
       scene%mesh%refined = reader%text_value('mesh', 1, 'refine') == 'edges'
       scene%mesh%nodes_by_accuracy = program_chooses_nodes(reader, scene)
-      if (any([scene%lower%shape, scene%upper%shape] == shape_profile) .and. &
+      if ((scene%lower%is_sampled() .or. scene%upper%is_sampled()) .and. &
           .not. any([(reader%has('mesh', 1, trim(fixed(i))), i=1, size(fixed))])) then
          scene%mesh%nodes = max(scene%mesh%nodes, scene%default_nodes())
          scene%mesh%nodes_by_patches = size(scene%steps) > 0 .and. .not. (scene%mesh%refined .or. needs_equal_intervals(scene))
@@ -65,7 +68,7 @@ contains
       if (.not. can_choose_mesh(scene)) then
          call reader%complain('mesh', 1, 'half_width', 'is needed: no step has a normal_force or approach to choose it from', &
                               error)
-      else if (.not. has_touchable_node(scene) .and. scene%lower%shape == shape_matrix) then
+      else if (.not. has_touchable_node(scene) .and. scene%lower%is_matrix()) then
          call reader%complain('body', 1, 'file', 'no node of this body is under the indenter', error)
       else if (.not. has_touchable_node(scene)) then
          call reader%complain('mesh', 1, trim(mesh_key(reader)), 'no node of this mesh is under the indenter', error)
@@ -82,7 +85,7 @@ contains
       integer :: i
 
       keys = list_of_words('half_width half_angle ends')
-      program_chooses_nodes = scene%lower%shape /= shape_matrix .and. .not. reader%has('mesh', 1, 'nodes')
+      program_chooses_nodes = .not. scene%lower%is_matrix() .and. .not. reader%has('mesh', 1, 'nodes')
       if (.not. scene%mesh%refined) program_chooses_nodes = program_chooses_nodes .and. &
                                                             .not. any([(reader%has('mesh', 1, keys(i)%text), i=1, size(keys))])
    end function program_chooses_nodes
@@ -197,13 +200,13 @@ contains
       integer :: nodes, fewest
       logical :: growing
 
-      if (body%rigid .or. .not. body%circular()) return
+      if (.not. body%deforms_as_circle()) return
       call choose_mesh(scene, nodes, interval, growing)
       intervals = intervals_round(scene, body, interval)
       if (nodes > intervals*(1.0_wp + whole)) then
          call reader%complain('mesh', 1, trim(mesh_key(reader)), &
                               'wraps around body '//to_text(number)//' more than once; reduce it', error)
-      else if (body%kernel /= kernel_fourier) then
+      else if (body%elasticity%kernel /= kernel_fourier) then
          return
       else if (intervals > most_intervals) then
          call reader%complain('body', number, 'kernel', 'the circle would have '//to_text(intervals, 3)// &
@@ -216,9 +219,9 @@ contains
                      to_text(scene%arc_radius())
          call reader%complain('body', number, 'kernel', 'needs a whole number of intervals around the circle of body '// &
                               to_text(number)//', not '//to_text(intervals, 10)//'; '//remedy, error)
-      else if (body%harmonics > 0) then
+      else if (body%elasticity%harmonics > 0) then
          fewest = (nint(intervals) + 1)/2
-         if (body%harmonics < fewest) &
+         if (body%elasticity%harmonics < fewest) &
             call reader%complain('body', number, 'harmonics', 'must be at least '//to_text(fewest)//', half the '// &
                                  to_text(nint(intervals))//' intervals of the circle; with fewer the compliance is singular', &
                                  error)

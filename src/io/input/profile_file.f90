@@ -1,8 +1,8 @@
 !> Profiles from text files with x and height, or with heights at equal distances.
 module mfv_profile_file
-   use mfv_body, only: body_type
    use mfv_case_data, only: case_data_type
    use mfv_error, only: error_type, set_error
+   use mfv_geometry, only: geometry_type
    use mfv_kinds, only: wp
    use mfv_profile, only: profile_of_points, trace_type
    use mfv_status, only: MFV_INPUT_ERROR
@@ -16,10 +16,10 @@ contains
    !> The profile in the file `path`, see read_table: x, increasing or decreasing, and height in every line, or heights alone.
    !> `trace`: options; `data`: has the datasets x and height if they are in memory. Error MFV_INPUT_ERROR with the line and what
    !> would be right.
-   subroutine read_profile(path, trace, body, error, data)
+   subroutine read_profile(path, trace, geometry, error, data)
       character(*), intent(in) :: path
       type(trace_type), intent(in) :: trace
-      type(body_type), intent(out) :: body
+      type(geometry_type), intent(out) :: geometry
       type(error_type), allocatable, intent(out) :: error
       type(case_data_type), intent(in), optional :: data
       real(wp), allocatable :: table(:, :), x(:)
@@ -41,7 +41,7 @@ contains
       end if
       x = table(1, :)
       if (size(table, 1) == 1) x = [(real(i, wp), i=0, size(x) - 1)]
-      call profile_of_points(x, table(size(table, 1), :), trace, body, error)
+      call profile_of_points(x, table(size(table, 1), :), trace, geometry, error)
       if (allocated(error)) error%message = path//': '//error%message
    end subroutine read_profile
 

@@ -2,7 +2,8 @@
 !> their names from here.
 module mfv_result_fields
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_positive_inf, ieee_quiet_nan, ieee_value
-   use mfv_body, only: body_type, shape_names
+   use mfv_body, only: body_type
+   use mfv_geometry, only: shape_names
    use mfv_body_pair, only: lower_body, upper_body
    use mfv_case, only: case_type
    use mfv_certificate, only: residual_count, residual_descriptions, residual_names
@@ -270,7 +271,7 @@ contains
          if (scene%modulus() > 0.0_wp) then
             call list%add('contact_modulus', scene%modulus(), 'force/length^2', 'modulus m of both bodies, 1/m = sum of '// &
                           '(kappa + 1)/(4 G)')
-            call list%add('dundurs_beta', scene%dundurs_beta(), '1', "Dundurs' parameter beta, positive if the lower body "// &
+            call list%add('dundurs_beta', scene%beta(), '1', "Dundurs' parameter beta, positive if the lower body "// &
                           "couples more strongly")
          end if
          call list%add('curvature', scene%curvature(), '1/length', 'relative curvature of disks and holes at the origin')
@@ -286,14 +287,16 @@ contains
       type(body_type), intent(in) :: body
 
       if (body%circular()) call list%add(name//'_radius', body%radius, 'length', 'radius of the '//name//' body')
-      if (.not. body%material%shear_modulus > 0.0_wp) return
-      call list%add(name//'_shear_modulus', body%material%shear_modulus, 'force/length^2', 'shear modulus of the '//name//' body')
-      call list%add(name//'_poisson_ratio', body%material%poisson_ratio, '1', "Poisson's ratio of the "//name//' body')
-      call list%add(name//'_kolosov_constant', body%material%kolosov, '1', "Kolosov's constant of the "//name//' body')
-      call list%add(name//'_datum', body%datum, 'length', 'distance from the origin at which displacements of the '//name// &
-                    ' body are measured')
-      call list%add(name//'_datum_of_case', merge(1, 0, body%datum_of_case), 'whether this is a default that depends on '// &
-                    'the loads or the mesh of this case')
+      associate (elasticity => body%elasticity, material => body%elasticity%material)
+         if (.not. material%shear_modulus > 0.0_wp) return
+         call list%add(name//'_shear_modulus', material%shear_modulus, 'force/length^2', 'shear modulus of the '//name//' body')
+         call list%add(name//'_poisson_ratio', material%poisson_ratio, '1', "Poisson's ratio of the "//name//' body')
+         call list%add(name//'_kolosov_constant', material%kolosov, '1', "Kolosov's constant of the "//name//' body')
+         call list%add(name//'_datum', elasticity%datum, 'length', 'distance from the origin at which displacements of the '// &
+                       name//' body are measured')
+         call list%add(name//'_datum_of_case', merge(1, 0, elasticity%datum_of_case), 'whether this is a default that depends '// &
+                       'on the loads or the mesh of this case')
+      end associate
    end subroutine add_body
 
    !> Compliance blocks of the scene, and memory of the kernels or matrices.

@@ -1,6 +1,6 @@
 !> What the nodes of a mesh miss of a profile that has more points than the mesh has nodes.
 module mfv_profile_sampling
-   use mfv_body, only: body_type, shape_profile
+   use mfv_geometry, only: geometry_type
    use mfv_kinds, only: pi, wp
    implicit none
    private
@@ -16,7 +16,7 @@ contains
    !> the profile at the nodes, length, positive away from the other body. Cubic polynomials interpolate the profile between points
    !> and the curve between nodes, so that a smooth profile departs little from its curve.
    subroutine find_missed(body, x, left, fraction, height)
-      type(body_type), intent(in) :: body
+      class(geometry_type), intent(in) :: body
       real(wp), intent(in) :: x(:)
       integer, allocatable, intent(out) :: left(:)
       real(wp), allocatable, intent(out) :: fraction(:), height(:)
@@ -86,7 +86,7 @@ contains
    !> Interval, at most `longest`, with which nodes miss nothing of a profile that changes the pressure by a fraction
    !> negligible_pressure of `pressure`, or that is a quarter of the mean spacing of its points; lengths.
    real(wp) function sufficient_interval(body, modulus, pressure, longest) result(interval)
-      type(body_type), intent(in) :: body
+      class(geometry_type), intent(in) :: body
       real(wp), intent(in) :: modulus, pressure, longest
       real(wp), parameter :: finer = sqrt(2.0_wp), nodes_per_point = 4.0_wp
       integer, allocatable :: left(:)
@@ -95,7 +95,7 @@ contains
       integer :: i, n
 
       interval = longest
-      if (body%shape /= shape_profile) return
+      if (.not. body%is_sampled()) return
       shortest = (body%to - body%from)/(nodes_per_point*(size(body%position) - 1))
       do while (interval > shortest)
          n = ceiling((body%to - body%from)/interval)

@@ -1,7 +1,7 @@
 !> Profiles from measured points: scaled, centred and levelled.
 module mfv_profile
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-   use mfv_body, only: body_type, interpolation_unset, new_profile
+   use mfv_geometry, only: geometry_type, interpolation_unset, new_profile
    use mfv_error, only: error_type, set_error
    use mfv_kinds, only: wp
    use mfv_numbers, only: largest_size, reasonable_sizes
@@ -18,7 +18,7 @@ module mfv_profile
    type :: trace_type
       !> Lengths of the case per unit of the points; for heights negative if they are positive outwards.
       real(wp) :: position_scale = 1.0_wp, height_scale = 1.0_wp
-      !> One of level_...; one of interpolation_... (mfv_body).
+      !> One of level_...; one of interpolation_... (mfv_geometry).
       integer :: level = level_none, interpolation = interpolation_unset
       !> Whether the middle of the positions is moved to x = 0.
       logical :: centred = .false.
@@ -34,10 +34,10 @@ contains
    !> The profile through measured points: increasing positions and the recess there; shape (points). Points without a value (NaN)
    !> are omitted and counted. Error MFV_INPUT_ERROR for fewer than 3 others, and for scales with which numbers are too large or
    !> points coincide.
-   subroutine profile_of_points(positions, heights, trace, body, error)
+   subroutine profile_of_points(positions, heights, trace, geometry, error)
       real(wp), intent(in) :: positions(:), heights(:)
       type(trace_type), intent(in) :: trace
-      type(body_type), intent(out) :: body
+      type(geometry_type), intent(out) :: geometry
       type(error_type), allocatable, intent(out) :: error
       real(wp), allocatable :: x(:), height(:)
       logical :: given(size(positions))
@@ -63,8 +63,8 @@ contains
       if (trace%level == level_mean) height = height - sum(height)/n
       if (trace%level >= level_line) call remove_polynomial(trace%level - level_mean, x, height)
       if (all(x(2:) > x(:n - 1))) then
-         body = new_profile(x, height, trace%interpolation)
-         body%dropouts = size(given) - n
+         geometry = new_profile(x, height, trace%interpolation)
+         geometry%dropouts = size(given) - n
       else
          call set_error(error, MFV_INPUT_ERROR, 'with position_scale and centred, points coincide')
       end if

@@ -1,0 +1,138 @@
+!> Elasticity of a body: how its surface deforms under tractions.
+!>
+!> What edges, scales and closed forms need to know of it are the constants of its near field (`near_field_type`), which every
+!> body with a smooth surface has: there surface displacements by line forces are
+!>
+!>     w by P:  -(A/pi) ln|x|      u by Q:  -(At/pi) ln|x|      w by Q:  B/2 sgn x      u by P: -B/2 sgn x
+!>
+!> up to smooth functions; A = At = (kappa + 1)/(4 G) and B = (kappa - 1)/(4 G) of an isotropic material (Johnson 1985, eqs. 2.19,
+!> 2.22 and 2.24; Barber 2010, chapter 12).
+module mfv_elasticity
+   use mfv_circle, only: kernel_exact, new_circle
+   use mfv_circle_kernels, only: body_disk, body_hole
+   use mfv_compliance, only: compliance_type
+   use mfv_half_plane, only: new_half_plane
+   use mfv_kinds, only: wp
+   use mfv_material, only: material_type
+   use mfv_matrix_compliance, only: matrix_of, new_matrix_compliance
+   implicit none
+   private
+   public :: elasticity_type, near_field_type, as_half_plane, as_disk, as_hole, as_matrix
+   public :: elasticity_own, elasticity_half_plane, elasticity_names
+
+   !> A half-plane; a disk or a hole of the radius of the surface; a user's matrix.
+   integer, parameter :: as_half_plane = 1, as_disk = 2, as_hole = 3, as_matrix = 4
+   !> Choices for a body: that of its shape, or a half-plane.
+   integer, parameter :: elasticity_own = 1, elasticity_half_plane = 2
+   character(*), parameter :: elasticity_names = 'own half_plane'
+
+   !> Constants of the near field of a body or, with B the difference of lower and upper body, a pair: A, At, B, length^2/force; 0
+   !> of a rigid body, and of a matrix.
+   type :: near_field_type
+      real(wp) :: normal = 0.0_wp, tangential = 0.0_wp, coupling = 0.0_wp
+   contains
+      procedure :: modulus
+      procedure :: beta
+   end type near_field_type
+
+   type :: elasticity_type
+      !> One of as_...
+      integer :: kind = as_half_plane
+      type(material_type) :: material = material_type()
+      !> Distance from x = 0 to the datum, the surface point where displacements vanish, length.
+      real(wp) :: datum = 0.0_wp
+      !> Whether this is a default that depends on the loads or on the mesh, not on the shapes.
+      logical :: datum_of_case = .false.
+      !> Disk and hole: kernel and harmonics, see mfv_circle.
+      integer :: kernel = kernel_exact, harmonics = 0
+      !> Matrix: surface length of each node, and displacements by nodal forces.
+      real(wp), allocatable :: width(:), matrix(:, :)
+   contains
+      procedure :: is_circle
+      procedure :: is_matrix
+      procedure :: near_field
+      procedure :: strain_by_bulk_stress
+      procedure :: make_compliance
+   end type elasticity_type
+
+contains
+
+   !> 1/A, force/length^2: half the contact modulus E* of an isotropic body; 0 without constants.
+   elemental real(wp) function modulus(self)
+      class(near_field_type), intent(in) :: self
+
+      modulus = 0.0_wp
+      if (self%normal > 0.0_wp) modulus = 1.0_wp/self%normal
+   end function modulus
+
+   !> B/sqrt(A At): Dundurs' second parameter (dissertation eq. 6.1), positive if the coupling of the lower body is stronger; 0
+   !> without constants.
+   elemental real(wp) function beta(self)
+      class(near_field_type), intent(in) :: self
+
+      beta = 0.0_wp
+      if (self%normal > 0.0_wp) beta = self%coupling/sqrt(self%normal*self%tangential)
+   end function beta
+
+   !> Whether the body deforms as a disk or as the plane around a hole.
+   elemental logical function is_circle(self)
+      class(elasticity_type), intent(in) :: self
+
+      is_circle = self%kind == as_disk .or. self%kind == as_hole
+   end function is_circle
+
+   !> Whether it is a user's matrix, which has its own nodes, and no stresses inside.
+   elemental logical function is_matrix(self)
+      class(elasticity_type), intent(in) :: self
+
+      is_matrix = self%kind == as_matrix
+   end function is_matrix
+
+   !> Constants of its near field, 0 without a material.
+   elemental type(near_field_type) function near_field(self) result(constants)
+      class(elasticity_type), intent(in) :: self
+
+      if (.not. self%material%shear_modulus > 0.0_wp) return
+      constants%normal = 1.0_wp/self%material%plane_modulus()
+      constants%tangential = constants%normal
+      constants%coupling = (self%material%kolosov - 1.0_wp)/(4.0_wp*self%material%shear_modulus)
+   end function near_field
+
+   !> Strain along the surface per uniform stress in its direction, length^2/force: 1/E in plane stress, (1 - nu^2)/E in plane
+   !> strain.
+   elemental real(wp) function strain_by_bulk_stress(self) result(strain)
+      class(elasticity_type), intent(in) :: self
+
+      strain = 0.5_wp/self%material%plane_modulus()
+   end function strain_by_bulk_stress
+
+   !> Compliance with `nodes` intervals of the width `interval` (length) of a surface of the radius `radius` (circles).
+   !> `coupling`, `tangential`: see mfv_compliance. `common_radius`: with radial normals, radius of the arc with the nodes of
+   !> both bodies, to which tractions refer (length); else 0. `ends`: of unequal intervals, arc lengths, shape (nodes + 1).
+   subroutine make_compliance(self, radius, nodes, interval, coupling, tangential, common_radius, compliance, ends)
+      class(elasticity_type), intent(in) :: self
+      integer, intent(in) :: nodes, coupling
+      real(wp), intent(in) :: radius, interval, common_radius
+      logical, intent(in) :: tangential
+      class(compliance_type), allocatable, intent(out) :: compliance
+      real(wp), intent(in), optional :: ends(:)
+      class(compliance_type), allocatable :: graded
+      real(wp) :: of_arc
+
+      select case (self%kind)
+      case (as_disk, as_hole)
+         of_arc = merge(common_radius, radius, common_radius > 0.0_wp)
+         allocate (compliance, source=new_circle(merge(body_disk, body_hole, self%kind == as_disk), self%material, of_arc, nodes, &
+                                                 interval, self%datum*(of_arc/radius), self%kernel, self%harmonics, coupling, &
+                                                 tangential, common_radius > 0.0_wp, ends))
+      case (as_matrix)
+         allocate (compliance, source=new_matrix_compliance(self%matrix, self%width, coupling, tangential))
+      case default
+         allocate (compliance, source=new_half_plane(self%material, nodes, interval, self%datum, coupling, tangential, ends))
+      end select
+      if (.not. present(ends)) return
+      call move_alloc(compliance, graded)
+      allocate (compliance, source=matrix_of(graded))
+   end subroutine make_compliance
+
+end module mfv_elasticity
