@@ -99,7 +99,7 @@ contains
       logical, allocatable :: sharp(:, :)
       integer, allocatable :: owner(:)
       real(wp), parameter :: near = 1.0e-6_wp
-      integer, parameter :: fewest_in_zone = 60, beside_edge = 30, fewest_coarse = 20, beside_edge_coarse = 8
+      integer, parameter :: fewest_in_zone = 60, beside_edge = 32, fewest_coarse = 20, beside_edge_coarse = 8
       integer, allocatable :: nodes(:)
       logical, allocatable :: done(:)
       type(traction_elements_type), allocatable :: parts(:)
@@ -759,16 +759,16 @@ contains
       end do
    end function merged
 
-   !> Append the knots between two points: see knots_of. Beside a rooted edge their distances from it grow as the sixth power of
-   !> their number: elements of a root contribute about the same errors to the stress at the edge, of the fourth order in their
-   !> number.
+   !> Append the knots between two points: see knots_of. Beside a rooted edge their distances from it grow as the fifth power of
+   !> their number: the error of the stress at the edge, where tractions go as a root, falls with the number to the power 2.5, as the
+   !> root of the shortest element.
    pure recursive subroutine append_between(left, right, roots, longest, parts, knots, number)
       real(wp), intent(in) :: left, right, roots(:), longest
       integer, intent(in) :: parts
       real(wp), allocatable, intent(inout) :: knots(:)
       integer, intent(inout) :: number
       real(wp), parameter :: most = 1000.0_wp
-      integer, parameter :: power = 6
+      integer, parameter :: power = 5
       real(wp) :: distance, middle
       logical :: is_root(2)
       integer :: i, pieces

@@ -242,7 +242,7 @@ CASE: dict[tuple[str, str], Row] = {
         upper=100.0,
         needed=": exponent is missing; it must be a number at least 1 and at most 100",
     ),
-    ("body", "elasticity"): choice("body(1)", "elastic disk", "'own'", "own half_plane"),
+    ("body", "elasticity"): choice("body(1)", "bore", "'own'", "own half_plane"),
     ("body", "kernel"): choice("body(1)", "elastic disk", "'exact'", "exact fourier"),
     ("body", "harmonics"): whole(
         "body(1)",
