@@ -1,12 +1,4 @@
 !> Elasticity of a body: how its surface deforms under tractions.
-!>
-!> What edges, scales and closed forms need to know of it are the constants of its near field (`near_field_type`), which every
-!> body with a smooth surface has: there surface displacements by line forces are
-!>
-!>     w by P:  -(A/pi) ln|x|      u by Q:  -(At/pi) ln|x|      w by Q:  B/2 sgn x      u by P: -B/2 sgn x
-!>
-!> up to smooth functions; A = At = (kappa + 1)/(4 G) and B = (kappa - 1)/(4 G) of an isotropic material (Johnson 1985, eqs. 2.19,
-!> 2.22 and 2.24; Barber 2010, chapter 12).
 module mfv_elasticity
    use mfv_circle, only: kernel_exact, new_circle
    use mfv_circle_kernels, only: body_disk, body_hole
@@ -15,9 +7,10 @@ module mfv_elasticity
    use mfv_kinds, only: wp
    use mfv_material, only: material_type
    use mfv_matrix_compliance, only: matrix_of, new_matrix_compliance
+   use mfv_near_field, only: near_field_of, near_field_type
    implicit none
    private
-   public :: elasticity_type, near_field_type, as_half_plane, as_disk, as_hole, as_matrix
+   public :: elasticity_type, as_half_plane, as_disk, as_hole, as_matrix
    public :: elasticity_own, elasticity_half_plane, elasticity_names
 
    !> A half-plane; a disk or a hole of the radius of the surface; a user's matrix.
@@ -25,15 +18,6 @@ module mfv_elasticity
    !> Choices for a body: that of its shape, or a half-plane.
    integer, parameter :: elasticity_own = 1, elasticity_half_plane = 2
    character(*), parameter :: elasticity_names = 'own half_plane'
-
-   !> Constants of the near field of a body or, with B the difference of lower and upper body, a pair: A, At, B, length^2/force; 0
-   !> of a rigid body, and of a matrix.
-   type :: near_field_type
-      real(wp) :: normal = 0.0_wp, tangential = 0.0_wp, coupling = 0.0_wp
-   contains
-      procedure :: modulus
-      procedure :: beta
-   end type near_field_type
 
    type :: elasticity_type
       !> One of as_...
@@ -57,23 +41,6 @@ module mfv_elasticity
 
 contains
 
-   !> 1/A, force/length^2: half the contact modulus E* of an isotropic body; 0 without constants.
-   elemental real(wp) function modulus(self)
-      class(near_field_type), intent(in) :: self
-
-      modulus = 0.0_wp
-      if (self%normal > 0.0_wp) modulus = 1.0_wp/self%normal
-   end function modulus
-
-   !> B/sqrt(A At): Dundurs' second parameter (dissertation eq. 6.1), positive if the coupling of the lower body is stronger; 0
-   !> without constants.
-   elemental real(wp) function beta(self)
-      class(near_field_type), intent(in) :: self
-
-      beta = 0.0_wp
-      if (self%normal > 0.0_wp) beta = self%coupling/sqrt(self%normal*self%tangential)
-   end function beta
-
    !> Whether the body deforms as a disk or as the plane around a hole.
    elemental logical function is_circle(self)
       class(elasticity_type), intent(in) :: self
@@ -92,10 +59,7 @@ contains
    elemental type(near_field_type) function near_field(self) result(constants)
       class(elasticity_type), intent(in) :: self
 
-      if (.not. self%material%shear_modulus > 0.0_wp) return
-      constants%normal = 1.0_wp/self%material%plane_modulus()
-      constants%tangential = constants%normal
-      constants%coupling = (self%material%kolosov - 1.0_wp)/(4.0_wp*self%material%shear_modulus)
+      constants = near_field_of(self%material)
    end function near_field
 
    !> Strain along the surface per uniform stress in its direction, length^2/force: 1/E in plane stress, (1 - nu^2)/E in plane
@@ -128,7 +92,8 @@ contains
       case (as_matrix)
          allocate (compliance, source=new_matrix_compliance(self%matrix, self%width, coupling, tangential))
       case default
-         allocate (compliance, source=new_half_plane(self%material, nodes, interval, self%datum, coupling, tangential, ends))
+         allocate (compliance, source=new_half_plane(self%near_field(), nodes, interval, self%datum, coupling, tangential, &
+                                                     ends))
       end select
       if (.not. present(ends)) return
       call move_alloc(compliance, graded)

@@ -1,11 +1,12 @@
 !> Compliance of an elastic half-plane under box tractions (dissertation appendix A, signs and factors as derived in
 !> docs/theory.md; Johnson 1985, section 2.5; Barber 2009, chapter 12).
 !>
-!> With h half the width of an interval and x the distance from its centre, a unit pressure gives
+!> With h half the width of an interval, x the distance from its centre and the constants A, At, B of mfv_near_field, of which no
+!> more is assumed, a unit pressure gives
 !>
-!>     w = (kappa+1)/(4 pi G) h [ 2 ln(D/h) + 2 - log_kernel(x/h) ],    u = -(kappa-1)/(4 G) h step_kernel(x/h)
+!>     w = (A/pi) h [ 2 ln(D/h) + 2 - log_kernel(x/h) ],    u = -B h step_kernel(x/h)
 !>
-!> and a unit shear the same with w and u exchanged and the sign of the second one changed. A half-plane has no rigid-body
+!> and a unit shear the same with w and u exchanged, At for A and the sign of the second one changed. A half-plane has no rigid-body
 !> constraint: displacements are measured from the surface point at the distance D (`datum`), where a concentrated normal
 !> force causes w = 0.
 !>
@@ -16,7 +17,7 @@ module mfv_half_plane
    use mfv_compliance
    use mfv_kernel_compliance, only: kernel_compliance_type
    use mfv_kinds, only: pi, wp
-   use mfv_material, only: material_type
+   use mfv_near_field, only: near_field_type
    use mfv_toeplitz, only: toeplitz_type, new_toeplitz
    implicit none
    private
@@ -25,11 +26,10 @@ module mfv_half_plane
    !> Toeplitz blocks: one entry per distance.
    type, extends(kernel_compliance_type) :: half_plane_type
       private
-      type(material_type) :: material
       real(wp) :: datum = 1.0_wp
-      !> C_wp = C_ut by distance, and C_wt = -C_up by distance (odd).
+      !> C_wp by distance, C_ut over it, and C_wt = -C_up by distance (odd).
       real(wp), allocatable :: direct(:)
-      real(wp) :: cross = 0.0_wp
+      real(wp) :: shear_ratio = 1.0_wp, cross = 0.0_wp
       !> Products with the first.
       type(toeplitz_type) :: operator
    contains
@@ -49,21 +49,21 @@ contains
    !> Half-plane with `nodes` intervals of width `interval` (length). `datum`: distance at which displacements are measured,
    !> length. `coupling`: see mfv_compliance. `tangential`: friction can act; otherwise only C_wp is built. `ends`: of unequal
    !> intervals, of which `interval` is the mean, length, shape (nodes + 1); such a body has entries only.
-   type(half_plane_type) function new_half_plane(material, nodes, interval, datum, coupling, tangential, ends) result(self)
-      type(material_type), intent(in) :: material
+   type(half_plane_type) function new_half_plane(constants, nodes, interval, datum, coupling, tangential, ends) result(self)
+      type(near_field_type), intent(in) :: constants
       integer, intent(in) :: nodes, coupling
       real(wp), intent(in) :: interval, datum
       logical, intent(in) :: tangential
       real(wp), intent(in), optional :: ends(:)
 
-      self%material = material
       self%interval = interval
       self%datum = datum
-      self%modulus = material%plane_modulus()
+      self%modulus = constants%modulus()
+      self%shear_ratio = constants%tangential/constants%normal
       call self%choose_blocks(coupling, tangential)
-      self%cross = (material%kolosov - 1.0_wp)/(8.0_wp*material%shear_modulus)*interval
+      self%cross = 0.5_wp*constants%coupling*interval
       self%nodes = nodes
-      self%is_homogeneous = .not. present(ends)
+      self%is_homogeneous = .not. (present(ends) .or. abs(self%shear_ratio - 1.0_wp) > 0.0_wp)
       if (present(ends)) then
          call self%grade(ends, odd=[.false., .true.])
       else
@@ -122,12 +122,15 @@ contains
       if (allocated(self%mean)) then
          matrix = self%mean(rows, columns, merge(direct_kernel, cross_kernel, block == block_wp .or. block == block_ut))
          if (block == block_up) matrix = -matrix
+         if (block == block_ut) matrix = self%shear_ratio*matrix
          return
       end if
       do j = 1, size(columns)
          select case (block)
-         case (block_wp, block_ut)
+         case (block_wp)
             matrix(:, j) = self%direct(abs(rows - columns(j)) + 1)
+         case (block_ut)
+            matrix(:, j) = self%shear_ratio*self%direct(abs(rows - columns(j)) + 1)
          case (block_wt)
             matrix(:, j) = self%cross*step_kernel(2.0_wp*(rows - columns(j)))
          case (block_up)
@@ -146,7 +149,7 @@ contains
       call self%operator%multiply(pressure, by_block(:, block_wp), shear, by_block(:, block_ut))
       if (self%has_block(block_wt)) call multiply_steps(self%cross, shear, by_block(:, block_wt))
       if (self%has_block(block_up)) call multiply_steps(-self%cross, pressure, by_block(:, block_up))
-      if (.not. self%has_block(block_ut)) by_block(:, block_ut) = 0.0_wp
+      by_block(:, block_ut) = merge(self%shear_ratio, 0.0_wp, self%has_block(block_ut))*by_block(:, block_ut)
    end subroutine products
 
    !> See mfv_compliance.

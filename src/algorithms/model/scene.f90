@@ -3,7 +3,7 @@ module mfv_scene
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_body, only: body_type
    use mfv_compliance, only: coupling_full
-   use mfv_elasticity, only: near_field_type
+   use mfv_near_field, only: near_field_type, pair_of
    use mfv_friction, only: friction_type
    use mfv_interior, only: has_interior, interior_type, new_interior
    use mfv_kinds, only: pi, wp
@@ -288,17 +288,11 @@ contains
       end do
    end function moves
 
-   !> Constants of the near field of both bodies together: A and At are sums, B is the difference. Those of a body without
-   !> material are 0.
+   !> Constants of the near field of both bodies together.
    pure type(near_field_type) function near_field(self) result(both)
       class(scene_type), intent(in) :: self
-      type(near_field_type) :: upper
 
-      both = self%lower%elasticity%near_field()
-      upper = self%upper%elasticity%near_field()
-      both%normal = both%normal + upper%normal
-      both%tangential = both%tangential + upper%tangential
-      both%coupling = both%coupling - upper%coupling
+      both = pair_of(self%lower%elasticity%near_field(), self%upper%elasticity%near_field())
    end function near_field
 
    !> Contact modulus of both bodies, force/length^2: 1/m = 1/m1 + 1/m2 with m = 4 G/(kappa + 1) of each elastic body; A in
@@ -318,7 +312,7 @@ contains
       curvature = self%lower%curvature() + self%upper%curvature()
    end function curvature
 
-   !> Dundurs' second parameter, see mfv_elasticity.
+   !> Dundurs' second parameter, see mfv_near_field.
    pure real(wp) function beta(self)
       class(scene_type), intent(in) :: self
       type(near_field_type) :: both
