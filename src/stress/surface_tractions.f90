@@ -760,8 +760,8 @@ contains
    end function merged
 
    !> Append the knots between two points: see knots_of. Beside a rooted edge their distances from it grow as the fifth power of
-   !> their number: the error of the stress at the edge, where tractions go as a root, falls with the number to the power 2.5, as the
-   !> root of the shortest element.
+   !> their number: the error of the stress at the edge, where tractions go as a root, falls with the number to the power 2.5, as
+   !> the root of the shortest element.
    pure recursive subroutine append_between(left, right, roots, longest, parts, knots, number)
       real(wp), intent(in) :: left, right, roots(:), longest
       integer, intent(in) :: parts
