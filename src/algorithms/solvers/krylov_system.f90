@@ -46,8 +46,6 @@ module mfv_krylov_system
       !> Tractions, shape (nodes), and motions, in the units of the system.
       real(wp), allocatable :: pressure(:), shear(:)
       real(wp) :: motion(motion_count) = 0.0_wp
-      !> First and last node in contact and held node; zero if there were gaps.
-      integer :: contact(2) = 0, held(2) = 0
    end type rates_type
 
    type, extends(contact_system_type) :: krylov_system_type
@@ -140,7 +138,9 @@ contains
 
       call find_prescribed(constraints, model, .true., prescribed)
       right = right_side(self, model, constraints%status, prescribed)
-      unknowns = guess_of_rates(self, self%last(constraints%kind))
+      associate (last => self%last(constraints%kind))
+         unknowns = [last%pressure(self%contact), last%shear(self%held), last%motion(self%free)]
+      end associate
       call iterate(self, model, right, merge(self%tolerance, self%rate_tolerance, constraints%kind == rates_of_loads)/margin, &
                    unknowns, fails)
       if (fails) return
@@ -148,8 +148,6 @@ contains
       associate (last => self%last(constraints%kind))
          last%pressure = self%found(:, 1)
          last%shear = self%found(:, 2)
-         last%contact = ends_of(self%contact)
-         last%held = ends_of(self%held)
          last%motion = motion_of(self, right%motion, unknowns)
       end associate
    end subroutine solve_by_iteration
@@ -185,10 +183,6 @@ contains
       self%width = model%width/self%length
       do i = 1, kinds_of_rates
          associate (last => self%last(i))
-            if (allocated(last%pressure)) then
-               where (last%contact > 0) last%contact = last%contact + (n - size(last%pressure))/2
-               where (last%held > 0) last%held = last%held + (n - size(last%pressure))/2
-            end if
             call widen(last%pressure, n)
             call widen(last%shear, n)
          end associate
@@ -313,48 +307,6 @@ contains
          right%offset(held) = 0.0_wp
       end associate
    end function right_side
-
-   !> The `last` rates as a guess: stretched to the present ends of consecutive nodes, so that singularities stay at the ends; node
-   !> by node if there are gaps.
-   function guess_of_rates(self, last) result(unknowns)
-      class(krylov_system_type), intent(in) :: self
-      type(rates_type), intent(in) :: last
-      real(wp), allocatable :: unknowns(:)
-      real(wp), dimension(size(last%pressure)) :: pressure, shear
-
-      pressure = last%pressure
-      shear = last%shear
-      call stretch(last%contact, ends_of(self%contact), pressure)
-      call stretch(last%held, ends_of(self%held), shear)
-      unknowns = [pressure(self%contact), shear(self%held), last%motion(self%free)]
-   end function guess_of_rates
-
-   !> First and last of consecutive nodes; zero if there are gaps or no nodes.
-   pure function ends_of(nodes) result(ends)
-      integer, intent(in) :: nodes(:)
-      integer :: ends(2)
-
-      ends = 0
-      if (size(nodes) == 0) return
-      if (nodes(size(nodes)) - nodes(1) == size(nodes) - 1) ends = [nodes(1), nodes(size(nodes))]
-   end function ends_of
-
-   !> Values between the nodes `old(1)` and `old(2)`, interpolated linearly to `new(1)` to `new(2)`.
-   pure subroutine stretch(old, new, values)
-      integer, intent(in) :: old(2), new(2)
-      real(wp), intent(inout) :: values(:)
-      real(wp) :: before(size(values)), place, ratio
-      integer :: i, left
-
-      if (all(old == new) .or. any([old, new] == 0) .or. old(2) == old(1) .or. new(2) == new(1)) return
-      before = values
-      ratio = real(old(2) - old(1), wp)/(new(2) - new(1))
-      do i = new(1), new(2)
-         place = old(1) + ratio*(i - new(1))
-         left = min(int(place), old(2) - 1)
-         values(i) = before(left) + (place - left)*(before(left + 1) - before(left))
-      end do
-   end subroutine stretch
 
    !> All motions: the free ones from the unknowns, the others `prescribed`.
    pure function motion_of(self, prescribed, unknowns) result(motion)

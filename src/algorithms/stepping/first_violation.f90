@@ -272,8 +272,6 @@ contains
       logical :: changing(size(path%state%status)), dropped, found, passed
       integer :: fastest
 
-      call drop_if_unstable(path, increment, iteration, dropped)
-      if (dropped) return
       if (was_tried(iteration, path%state%status)) then
          if (path%trial > shortest_trial) then
             ! Nonlinear friction may have consistent rates over a shorter increment.
@@ -353,24 +351,6 @@ contains
       call path%set_rows(constraints, .false.)
       call find_statuses_by_rates(path, constraints, found)
    end subroutine find_statuses_at_once
-
-   !> Begin a stress drop, once at each load, at nodes that may be unstable and would slip back: they either stick, or the bodies
-   !> cannot unload as fast as friction decreases. A stress drop that is not needed ends at once, and the node sticks.
-   subroutine drop_if_unstable(path, increment, iteration, dropped)
-      class(contact_path_type), intent(inout) :: path
-      type(increment_type), intent(in) :: increment
-      type(iteration_type), intent(inout) :: iteration
-      logical, intent(out) :: dropped
-
-      dropped = .false.
-      if (iteration%dropped .or. .not. any(increment%violations%kind == event_stick)) return
-      if (.not. any(increment%violations%kind == event_stick .and. increment%violations%step <= shortest_step(path) .and. &
-                    path%can_become_unstable())) return
-      call path%begin_stress_drop(iteration, dropped)
-      if (.not. dropped) return
-      call renew(iteration, iteration%event, iteration%node, iteration%count)
-      iteration%dropped = .true.
-   end subroutine drop_if_unstable
 
    !> Begin the iteration at a new load, in the same storage; optionally with the first change.
    pure subroutine renew(iteration, event, node, number)

@@ -180,7 +180,6 @@ contains
             call refine_samples(path, interval, start, chain, accepted, increments)
          if (chain%fronts .and. accepted .and. .not. (chain%begins .or. allocated(chain%samples)) .and. shares_work(chain)) &
             call sample_works(path, interval, start, chain)
-         if (accepted .and. .not. chain%fronts) accepted = .not. slips_back(path, interval, chain)
          if (accepted .or. increments == 0) return
       end do
    end subroutine refine
@@ -357,24 +356,6 @@ contains
       if (chain%work_error > 0.0_wp) &
          error = chain%work_error/max(path%model%scene%method%accuracy*reference_work(path, chain), tiny(1.0_wp))
    end function relative_work_error
-
-   !> Whether nodes that slip in the last increment would slip back at its end: they have stuck within the increment, which no
-   !> chain resolves. This does not occur under constant pressures.
-   logical function slips_back(path, interval, chain)
-      class(contact_path_type), intent(inout) :: path
-      type(segment_type), intent(in) :: interval
-      type(chain_type), intent(in) :: chain
-      real(wp), parameter :: negligible = 1.0e-9_wp
-      type(contact_fields_type) :: rates
-      logical :: found
-
-      associate (last => chain%after(chain%increments), begin => chain%before(1)%fields)
-         slips_back = maxval(abs(last%pressure - begin%pressure)) > max(negligible, path%system%tolerance)*chain%traction
-         if (.not. slips_back) return
-         call find_rates_after(path, interval, chain, chain%increments, .false., rates, found)
-         if (found) slips_back = any(slipping_back(path, chain%before(chain%increments)%status, rates))
-      end associate
-   end function slips_back
 
    !> The work that the error of the dissipation of a chain is compared with, force: the dissipation. If contact begins, that is
    !> often next to nothing: then at least that of a cycle of shear to about 0.8 mu P, as a fraction of (mu P)^2/m, m the contact
