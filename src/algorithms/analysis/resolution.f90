@@ -76,7 +76,7 @@ contains
    pure recursive logical function is_unresolved(unresolved, name) result(is_there)
       type(unresolved_type), intent(in) :: unresolved(:)
       character(*), intent(in) :: name
-      character(len=20) :: group
+      character(len=21) :: group
       integer :: i
 
       is_there = any([(has_word(unresolved(i)%quantities, name), i=1, size(unresolved))])
@@ -110,7 +110,7 @@ contains
    !> dimensionless number its uncertain factor.
    pure function named_as(name)
       character(*), intent(in) :: name
-      character(len=20) :: named_as
+      character(len=21) :: named_as
 
       select case (name)
       case ('contact_centre')
@@ -135,6 +135,8 @@ contains
          named_as = 'dissipation'
       case ('lower_tension_x', 'upper_tension_x')
          named_as = name(:13)
+      case ('largest_lower_tension_x', 'largest_upper_tension_x')
+         named_as = name(:21)
       case default
          named_as = ''
          if (index(name, 'largest_') == 1 .or. index(name, 'smallest_') == 1) named_as = 'extremes'
@@ -164,6 +166,16 @@ contains
       if (has_interior(simulation%contact%model%scene%lower)) names = ' lower_tension'
       if (has_interior(simulation%contact%model%scene%upper)) names = trim(names)//' upper_tension'
    end function tensions
+
+   !> These and the largest over the history.
+   function largest_tensions(simulation) result(names)
+      type(simulation_type), intent(in) :: simulation
+      character(len=72) :: names
+
+      names = tensions(simulation)
+      if (has_interior(simulation%contact%model%scene%lower)) names = trim(names)//' largest_lower_tension'
+      if (has_interior(simulation%contact%model%scene%upper)) names = trim(names)//' largest_upper_tension'
+   end function largest_tensions
 
    !> The contact patch with the fewest nodes among those that matter: that carry a part of the normal force, or the peak pressure.
    function poorest_patch(simulation) result(poorest)
@@ -323,7 +335,7 @@ contains
       width = huge(width)
       interval = contact_interval(simulation%contact%model, simulation%contact%state)
       call add_work(simulation%slip, 'dissipation largest_slip_range')
-      ! The tension behind a contact grows with the root of its slip zone.
+      ! The tension behind a contact depends on the root of its slip zone: without one it would have no limit.
       call add_zones(simulation%slip, 'stick_ratio peak_shear extremes'//tensions(simulation))
       if (.not. simulation%slip%is_coarse_now(interval)) then
          call add_edge(-1)
@@ -362,7 +374,11 @@ contains
          type(slip_record_type), intent(in) :: slip
          character(*), intent(in) :: quantities
 
-         if (slip%is_coarse_now(interval)) call add(quantities, slip%nodes_now, slip%width_now)
+         if (slip%is_coarse_now(interval)) then
+            call add(quantities, slip%nodes_now, slip%width_now)
+         else if (slip%nodes_now == 0 .and. slip%width_now > 0.0_wp) then
+            call add(adjustl(largest_tensions(simulation)), 0, slip%width_now)
+         end if
       end subroutine add_zones
 
       !> A slip zone at an edge with too few nodes, or none, although the widest one is resolved. A traction that points from the
@@ -391,6 +407,7 @@ contains
          integer, intent(in) :: its_nodes
          real(wp), intent(in) :: its_width
 
+         if (quantities == '') return
          if (index(names//' ', ' '//trim(quantities)//' ') == 0) names = names//' '//trim(quantities)
          nodes = min(nodes, its_nodes)
          width = min(width, its_width)
@@ -406,7 +423,6 @@ contains
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
       type(zone_type), allocatable :: zones(:)
       real(wp) :: ratio(0:simulation%contact%model%nodes() + 1)
-      character(len=80) :: names
       integer :: node
 
       associate (model => simulation%contact%model, state => simulation%contact%state)
@@ -427,11 +443,8 @@ contains
             associate (first => zones(node)%first, last => zones(node)%last)
                if (first == 1 .or. last == model%nodes() .or. last - first + 1 >= resolved_nodes) cycle
                if (slip_sign(state%status(first - 1))*slip_sign(state%status(last + 1)) >= 0) cycle
-               names = tensions(simulation)
-               if (has_interior(model%scene%lower)) names = trim(names)//' largest_lower_tension'
-               if (has_interior(model%scene%upper)) names = trim(names)//' largest_upper_tension'
-               call add_unresolved(unresolved, names(2:), 'near x = '//to_text(model%x(first), 4)//' a stick zone between '// &
-                                   'opposite slip has only '//to_text(last - first + 1)// &
+               call add_unresolved(unresolved, adjustl(largest_tensions(simulation)), 'near x = '// &
+                          to_text(model%x(first), 4)//' a stick zone between opposite slip has only '//to_text(last - first + 1)// &
                                    trim(merge(' node ', ' nodes', first == last)), 'use more nodes')
                return
             end associate
