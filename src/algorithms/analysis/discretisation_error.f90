@@ -310,8 +310,8 @@ contains
          if (any(ieee_is_nan(values(place, :))) .and. .not. is_unresolved(unresolved, trim(observables(place)%name))) &
             names = names//' '//trim(observables(place)%name)
       end do
-      if (names /= '') call add_unresolved(unresolved, names(2:), 'undefined or another number on a coarser mesh', &
-                                           'use more nodes')
+      if (names /= '') call add_unresolved(unresolved, names(2:), 'undefined on a coarser mesh, or it has another number of '// &
+                                           'stick zones', 'use more nodes')
    end subroutine add_missing
 
    !> Why a coarser mesh says nothing about the discretisation error of a simulation; empty if it does.
