@@ -76,6 +76,12 @@ contains
                                                       is_smooth(simulation%contact%model, place), &
                                                       all(behaviour /= [error_pressure, error_shear, error_local]))
                end associate
+               ! Not an allowance: on coarser meshes it would hide differences.
+               if (observables(place)%name == 'largest_pressure_x') estimate%bar(place)%error = &
+                  max(estimate%bar(place)%error, distance_of_maxima(simulation%contact%model%x, &
+                                                                    simulation%contact%state%fields%pressure, values(place, 1)))
+               if (observables(place)%name == 'largest_slip_range') &
+                  call narrow_slip_range(nodes, values, allowances, estimate%bar(place))
                if (allocated(simulation%contact%model%scene%mesh%ends)) &
                   estimate%bar(place)%error = of_unequal_intervals*estimate%bar(place)%error
             end if
@@ -84,6 +90,32 @@ contains
       end if
       simulation%estimate = estimate
    end subroutine estimate_error
+
+   !> The bar of a slip range that is largest at the outermost node of one patch, on every mesh: in first order the range grows in
+   !> proportion to the distance of this node from the contact's edge, d, with a slope from all meshes. The bar is slope*d and what
+   !> the line leaves, as for other quantities.
+   pure subroutine narrow_slip_range(nodes, values, allowances, bar)
+      integer, intent(in) :: nodes(:)
+      real(wp), intent(in) :: values(:, :), allowances(:, :)
+      type(error_bar_type), intent(inout) :: bar
+      real(wp), dimension(size(nodes)) :: distance, range, line
+      real(wp) :: slope
+      type(error_bar_type) :: other
+      integer :: place
+
+      place = observable_place('largest_slip_range_x')
+      distance = 0.5_wp*values(observable_place('contact_length'), :) - &
+                 abs(values(place, :) - values(observable_place('contact_centre'), :))
+      if (any(nint(values(observable_place('patches'), :)) /= 1 .or. distance < 0.0_wp .or. distance > allowances(place, :))) return
+      range = values(observable_place('largest_slip_range'), :)
+      associate (far => distance(2:) - distance(1))
+         if (.not. sum(far**2) > 0.0_wp) return
+         slope = sum(far*(range(2:) - range(1)))/sum(far**2)
+         line = slope*(distance - distance(1))
+      end associate
+      other = new_error_bar(nodes, range - line, spread(abs(slope)*distance(1), 1, size(nodes)), .false., .false., .true.)
+      bar%error = min(bar%error, other%error)
+   end subroutine narrow_slip_range
 
    !> Whether a peak is at a corner, where it grows whenever intervals are halved, and how it changes from mesh to mesh depends more
    !> on where the corner lies between nodes: peaks of the pressure, and of the shear at a corner that has slipped. `values`: of
@@ -226,9 +258,11 @@ contains
       class(observer_type), intent(inout), target, optional :: observer
       type(relay_type) :: watch
       type(simulation_type) :: coarse
+      logical :: other_zones
       integer :: i, before
 
       before = size(unresolved)
+      other_zones = .false.
       allocate (values(observable_count, size(nodes)), allowances(observable_count, size(nodes)))
       call observables_of(simulation, values(:, 1))
       allowances(:, 1) = interval_allowances(simulation, values(:, 1))
@@ -245,31 +279,43 @@ contains
          end if
          call observables_of(coarse, values(:, i))
          allowances(:, i) = interval_allowances(coarse, values(:, i))
+         other_zones = other_zones .or. stick_zones(coarse) /= stick_zones(simulation)
          if (estimate%doubt == '') estimate%doubt = trim(difference_of_meshes(simulation, coarse))
       end do
       if (estimate%doubt /= '') then
          call add_unresolved(unresolved, all_quantities(simulation), estimate%doubt, 'use more nodes')
       else
-         call add_missing(values, unresolved)
+         call add_missing(values, merge('stick_zones stick_left stick_right', repeat(' ', 34), other_zones), unresolved)
          if (size(unresolved) == before) return
       end if
       estimate%doubt = unresolved(size(unresolved))%text
    end subroutine solve_coarser_meshes
 
-   !> Observables that are undefined on a coarser mesh are not resolved. `values`: as above.
-   subroutine add_missing(values, unresolved)
+   !> The number of stick zones.
+   pure integer function stick_zones(simulation)
+      type(simulation_type), intent(in) :: simulation
+
+      stick_zones = size(zones_of(holds(simulation%contact%state%status)))
+   end function stick_zones
+
+   !> Observables that are undefined on a coarser mesh are not resolved, nor are those in `others`, separated by blanks, which have
+   !> another value there. `values`: as above.
+   subroutine add_missing(values, others, unresolved)
       real(wp), intent(in) :: values(:, :)
+      character(*), intent(in) :: others
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
       character(:), allocatable :: names
       integer :: place
 
       names = ''
+      if (others /= '') names = ' '//others
       do place = 1, observable_count
          if (observables(place)%error == error_none .or. ieee_is_nan(values(place, 1))) cycle
          if (any(ieee_is_nan(values(place, :))) .and. .not. is_unresolved(unresolved, trim(observables(place)%name))) &
             names = names//' '//trim(observables(place)%name)
       end do
-      if (names /= '') call add_unresolved(unresolved, names(2:), 'undefined on a coarser mesh', 'use more nodes')
+      if (names /= '') call add_unresolved(unresolved, names(2:), 'undefined on a coarser mesh, or it has another number of '// &
+                                           'stick zones', 'use more nodes')
    end subroutine add_missing
 
    !> Why a coarser mesh says nothing about the discretisation error of a simulation; empty if it does.
@@ -449,6 +495,20 @@ contains
          end associate
       end subroutine add_coarse_slip
    end function interval_allowances
+
+   !> Distance of the farthest maximum of the pressure from `place`, length, that may be the largest between nodes: it rises by no
+   !> more than it does from the steeper neighbour. Arguments of shape (nodes).
+   pure real(wp) function distance_of_maxima(x, pressure, place) result(distance)
+      real(wp), intent(in) :: x(:), pressure(:), place
+      integer :: i
+
+      distance = 0.0_wp
+      do i = 2, size(x) - 1
+         if (pressure(i) < max(pressure(i - 1), pressure(i + 1))) cycle
+         if (2.0_wp*pressure(i) - min(pressure(i - 1), pressure(i + 1)) >= maxval(pressure)) &
+            distance = max(distance, abs(x(i) - place))
+      end do
+   end function distance_of_maxima
 
    !> Uncertainty within an interval of observables of each behaviour in a state: that of the edges of contact and
    !> stick zones (the half-width, the stick ratio), and that of cusps.

@@ -26,10 +26,11 @@ module mfv_refinement
    !> Most cycles of a step on the coarser meshes.
    integer, parameter :: most_cycles = 2
 
-   !> The edges of some states, the last state first, whether they are those of a contact, and the outermost ones; lengths.
+   !> The edges of some states, their ranks (those of the last state first; even: of contact; then odd: of stick zones), and the
+   !> outermost ones; lengths.
    type :: edges_type
       real(wp), allocatable :: points(:)
-      logical, allocatable :: is_contact(:)
+      integer, allocatable :: rank(:)
       real(wp) :: left = huge(1.0_wp), right = -huge(1.0_wp)
       !> Whether a body ends at the outermost edge.
       logical :: left_ends = .false., right_ends = .false.
@@ -86,7 +87,7 @@ contains
          if (exceeded) extra = more*extra
          is_last = pass == most_passes .or. (pass >= passes .and. .not. exceeded)
          call limit(scene, edges, extra)
-         call graded_ends(edges%points, edges%left, edges%right, merge(nodes, trial%mesh%nodes, is_last), ends)
+         call graded_ends(edges%points, edges%rank, edges%left, edges%right, merge(nodes, trial%mesh%nodes, is_last), ends)
          trial%mesh%ends = ends
          trial%mesh%nodes = size(ends) - 1
          if (is_last) exit
@@ -149,22 +150,23 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(edges_type), intent(out) :: edges
       type(patch_type), allocatable :: patches(:)
-      integer :: i, j, k
+      integer :: i, j, k, rank
 
-      allocate (edges%points(0), edges%is_contact(0))
+      allocate (edges%points(0), edges%rank(0))
       do i = simulation%snapshot_count + 1, 1, -1
          if (i > simulation%snapshot_count) then
             call find_patches(simulation%contact%model, simulation%contact%state, patches)
          else
             call find_patches(simulation%contact%model, simulation%padded(simulation%snapshots(i)), patches)
          end if
+         rank = 2*(simulation%snapshot_count + 1 - i)
          do j = 1, size(patches)
             associate (patch => patches(j))
                edges%points = [edges%points, patch%left, patch%right]
-               edges%is_contact = [edges%is_contact, .true., .true.]
+               edges%rank = [edges%rank, rank, rank]
                do k = 1, size(patch%stick)
                   edges%points = [edges%points, patch%stick(k)%left, patch%stick(k)%right]
-                  edges%is_contact = [edges%is_contact, .false., .false.]
+                  edges%rank = [edges%rank, rank + 1, rank + 1]
                end do
                if (patch%left < edges%left) edges%left_ends = patch%left_ends
                if (patch%right > edges%right) edges%right_ends = patch%right_ends
@@ -183,8 +185,8 @@ contains
       integer :: i, nearest
 
       do i = 1, size(edges%points)
-         if (.not. edges%is_contact(i)) cycle
-         nearest = minloc(abs(first%points - edges%points(i)), dim=1, mask=first%is_contact)
+         if (modulo(edges%rank(i), 2) /= 0) cycle
+         nearest = minloc(abs(first%points - edges%points(i)), dim=1, mask=modulo(first%rank, 2) == 0)
          if (abs(first%points(nearest) - edges%points(i)) <= very_near*(first%right - first%left)) &
             edges%points(i) = first%points(nearest)
       end do
@@ -199,7 +201,7 @@ contains
       indenter = indenter_of(scene)
       if (indenter%is_flat() .or. .not. indenter%is_pointed()) return
       edges%points = [0.0_wp, edges%points]
-      edges%is_contact = [.false., edges%is_contact]
+      edges%rank = [-1, edges%rank]
    end subroutine add_tip
 
    !> Widen the range of the edges to that of the mesh: by a `part` of it on either side, but not beyond the mesh of the user or

@@ -6,7 +6,7 @@ module mfv_resolution
    use mfv_contact_model, only: needs_equal_intervals
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
-   use mfv_motions, only: motion_approach
+   use mfv_motions, only: motion_approach, motion_rotation
    use mfv_node_status, only: holds, in_contact, slip_sign
    use mfv_observables, only: observable_count, observables
    use mfv_profile_sampling, only: find_missed, negligible_pressure, pressure_of_wave
@@ -45,6 +45,7 @@ contains
       end if
       call check_slip_zones(simulation, unresolved)
       call check_stick_zones(simulation, unresolved)
+      call check_shakedown(simulation, unresolved)
       call check_rolling(simulation, unresolved)
       call check_worn_shape(simulation, unresolved)
    end subroutine find_unresolved
@@ -75,7 +76,7 @@ contains
    pure recursive logical function is_unresolved(unresolved, name) result(is_there)
       type(unresolved_type), intent(in) :: unresolved(:)
       character(*), intent(in) :: name
-      character(len=20) :: group
+      character(len=21) :: group
       integer :: i
 
       is_there = any([(has_word(unresolved(i)%quantities, name), i=1, size(unresolved))])
@@ -109,7 +110,7 @@ contains
    !> dimensionless number its uncertain factor.
    pure function named_as(name)
       character(*), intent(in) :: name
-      character(len=20) :: named_as
+      character(len=21) :: named_as
 
       select case (name)
       case ('contact_centre')
@@ -134,6 +135,8 @@ contains
          named_as = 'dissipation'
       case ('lower_tension_x', 'upper_tension_x')
          named_as = name(:13)
+      case ('largest_lower_tension_x', 'largest_upper_tension_x')
+         named_as = name(:21)
       case default
          named_as = ''
          if (index(name, 'largest_') == 1 .or. index(name, 'smallest_') == 1) named_as = 'extremes'
@@ -163,6 +166,16 @@ contains
       if (has_interior(simulation%contact%model%scene%lower)) names = ' lower_tension'
       if (has_interior(simulation%contact%model%scene%upper)) names = trim(names)//' upper_tension'
    end function tensions
+
+   !> These and the largest over the history.
+   function largest_tensions(simulation) result(names)
+      type(simulation_type), intent(in) :: simulation
+      character(len=72) :: names
+
+      names = tensions(simulation)
+      if (has_interior(simulation%contact%model%scene%lower)) names = trim(names)//' largest_lower_tension'
+      if (has_interior(simulation%contact%model%scene%upper)) names = trim(names)//' largest_upper_tension'
+   end function largest_tensions
 
    !> The contact patch with the fewest nodes among those that matter: that carry a part of the normal force, or the peak pressure.
    function poorest_patch(simulation) result(poorest)
@@ -322,7 +335,7 @@ contains
       width = huge(width)
       interval = contact_interval(simulation%contact%model, simulation%contact%state)
       call add_work(simulation%slip, 'dissipation largest_slip_range')
-      ! The tension behind a contact grows with the root of its slip zone.
+      ! The tension behind a contact depends on the root of its slip zone: without one it would have no limit.
       call add_zones(simulation%slip, 'stick_ratio peak_shear extremes'//tensions(simulation))
       if (.not. simulation%slip%is_coarse_now(interval)) then
          call add_edge(-1)
@@ -361,7 +374,11 @@ contains
          type(slip_record_type), intent(in) :: slip
          character(*), intent(in) :: quantities
 
-         if (slip%is_coarse_now(interval)) call add(quantities, slip%nodes_now, slip%width_now)
+         if (slip%is_coarse_now(interval)) then
+            call add(quantities, slip%nodes_now, slip%width_now)
+         else if (slip%nodes_now == 0 .and. slip%width_now > 0.0_wp) then
+            call add(adjustl(largest_tensions(simulation)), 0, slip%width_now)
+         end if
       end subroutine add_zones
 
       !> A slip zone at an edge with too few nodes, or none, although the widest one is resolved. A traction that points from the
@@ -390,29 +407,35 @@ contains
          integer, intent(in) :: its_nodes
          real(wp), intent(in) :: its_width
 
+         if (quantities == '') return
          if (index(names//' ', ' '//trim(quantities)//' ') == 0) names = names//' '//trim(quantities)
          nodes = min(nodes, its_nodes)
          width = min(width, its_width)
       end subroutine add
    end subroutine check_slip_zones
 
-   !> Stick zones without a node, between neighbouring nodes that slip in opposite directions, which change their number. (A maximum
-   !> of the shear near the friction limit inside a stick zone is no sign of a slip zone: former edges have one on any mesh.) And
-   !> stick zones with few nodes between opposite
-   !> slip, in which the shear traction changes its sign: the stress along the surface would have no limit without them.
+   !> Zones without a node, which change the number of stick zones: of stick between neighbouring nodes that slip in opposite
+   !> directions, and of slip where the remaining friction inside a stick zone has a minimum, as at a former edge, that is smaller
+   !> than the error of tractions with m nodes in contact, about 1/m. And stick zones with few nodes between opposite slip, in which
+   !> the shear traction changes its sign: the stress along the surface would have no limit without them.
    subroutine check_stick_zones(simulation, unresolved)
       type(simulation_type), intent(in) :: simulation
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
       type(zone_type), allocatable :: zones(:)
-      character(len=80) :: names
+      real(wp) :: ratio(0:simulation%contact%model%nodes() + 1)
       integer :: node
 
       associate (model => simulation%contact%model, state => simulation%contact%state)
          if (.not. model%tangential .or. .not. allocated(model%scene%friction%law)) return
+         ratio = 0.0_wp
+         where (in_contact(state%status) .and. state%fields%pressure > 0.0_wp) &
+            ratio(1:model%nodes()) = abs(state%fields%shear)/(model%static_friction*state%fields%pressure)
          do node = 1, model%nodes() - 1
-            if (slip_sign(state%status(node))*slip_sign(state%status(node + 1)) >= 0) cycle
-            call add_unresolved(unresolved, 'stick_zones', 'near x = '//to_text(model%x(node), 4)//' a stick zone has no node', &
-                                'use more nodes')
+            if (slip_sign(state%status(node))*slip_sign(state%status(node + 1)) >= 0 .and. .not. &
+                (holds(state%status(node)) .and. .not. model%moves(motion_rotation) .and. &
+                 ratio(node) > max(1.0_wp - 1.0_wp/max(state%contact_nodes(), 1), ratio(node - 1), ratio(node + 1)))) cycle
+            call add_unresolved(unresolved, 'stick_zones', 'near x = '//to_text(model%x(node), 4)//' a stick or slip zone may '// &
+                                'have no node', 'use more nodes')
             exit
          end do
          zones = zones_of(holds(state%status))
@@ -420,17 +443,33 @@ contains
             associate (first => zones(node)%first, last => zones(node)%last)
                if (first == 1 .or. last == model%nodes() .or. last - first + 1 >= resolved_nodes) cycle
                if (slip_sign(state%status(first - 1))*slip_sign(state%status(last + 1)) >= 0) cycle
-               names = tensions(simulation)
-               if (has_interior(model%scene%lower)) names = trim(names)//' largest_lower_tension'
-               if (has_interior(model%scene%upper)) names = trim(names)//' largest_upper_tension'
-               call add_unresolved(unresolved, names(2:), 'near x = '//to_text(model%x(first), 4)//' a stick zone between '// &
-                                   'opposite slip has only '//to_text(last - first + 1)// &
+               call add_unresolved(unresolved, adjustl(largest_tensions(simulation)), 'near x = '// &
+                          to_text(model%x(first), 4)//' a stick zone between opposite slip has only '//to_text(last - first + 1)// &
                                    trim(merge(' node ', ' nodes', first == last)), 'use more nodes')
                return
             end associate
          end do
       end associate
    end subroutine check_stick_zones
+
+   !> Slip that vanishes from cycle to cycle: whether nodes at their friction limit still slip a little is a matter of the mesh.
+   subroutine check_shakedown(simulation, unresolved)
+      type(simulation_type), intent(in) :: simulation
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
+      real(wp), parameter :: least_part = 1.0e-4_wp
+      character(len=120) :: names
+
+      if (simulation%cycle_count == 0) return
+      associate (cycle => simulation%cycles(simulation%cycle_count))
+         if (cycle%dissipation() >= least_part*cycle%first_dissipation) return
+         names = 'largest_slip_range'
+         if (cycle%dissipation() > 0.0_wp) names = trim(names)//' stick_ratio stick_ratio_reversal stick_ratio_return '// &
+                                                   'smallest_stick_ratio largest_stick_ratio'
+         call add_unresolved(unresolved, trim(names), 'the slip vanishes from cycle to cycle: the last one dissipates '// &
+                             to_text(cycle%dissipation()/cycle%first_dissipation, 2)//' of the first one', &
+                             'whether nodes still slip depends on the mesh')
+      end associate
+   end subroutine check_shakedown
 
    !> Creepage, a mean over some intervals, while it changes.
    subroutine check_rolling(simulation, unresolved)

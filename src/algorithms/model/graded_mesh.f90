@@ -24,11 +24,11 @@ module mfv_graded_mesh
 contains
 
    !> Ends of about `nodes` intervals from `left` to `right` that are small at the `points` in between, of which there is at least
-   !> one; the most important come first: of two that are too close for this number of intervals, the later one is not used.
-   !> Lengths.
-   pure subroutine graded_ends(points, left, right, nodes, ends)
+   !> one: of two that are too close for this number of intervals, that of the higher rank is not used, and their middle is if the
+   !> ranks are equal. Lengths; ranks of shape (points).
+   pure subroutine graded_ends(points, rank, left, right, nodes, ends)
       real(wp), intent(in) :: points(:), left, right
-      integer, intent(in) :: nodes
+      integer, intent(in) :: rank(:), nodes
       real(wp), allocatable, intent(out) :: ends(:)
       type(piece_type), allocatable :: pieces(:)
       real(wp), allocatable :: used(:)
@@ -38,7 +38,7 @@ contains
       ! Points at an end up to round-off, such as edges at corners of a body, are there: no interval fits between.
       smallest = (right - left)/real(nodes, wp)**grading
       at_ends = merge(left, merge(right, points, abs(points - right) <= smallest), abs(points - left) <= smallest)
-      call choose_points(at_ends, left, right, nodes, used)
+      call choose_points(at_ends, rank, left, right, nodes, used)
       call find_pieces(used, left, right, pieces)
       ends = [left]
       do i = 1, size(pieces)
@@ -92,11 +92,12 @@ contains
       if (points(n) < right) pieces = [pieces, piece_type(points(n), right - points(n), density_outside, 1)]
    end subroutine find_pieces
 
-   !> The points that are used, increasing: not beyond the ends, not closer to a more important one than the smallest interval, and
-   !> not too many.
-   pure subroutine choose_points(points, left, right, nodes, used)
-      real(wp), intent(in) :: points(:), left, right
-      integer, intent(in) :: nodes
+   !> The points that are used, increasing: not beyond the ends, not closer to each other than the smallest interval, and not too
+   !> many. `points`: changed to the middles of those that are too close.
+   pure subroutine choose_points(points, rank, left, right, nodes, used)
+      real(wp), intent(inout) :: points(:)
+      real(wp), intent(in) :: left, right
+      integer, intent(in) :: rank(:), nodes
       real(wp), allocatable, intent(out) :: used(:)
       type(piece_type), allocatable :: pieces(:)
       logical, allocatable :: keep(:)
@@ -117,7 +118,11 @@ contains
          if (minval(apart) > smallest .and. size(used)*fewest_intervals <= nodes) return
          ! Pairs that are equally close together, so that the mesh of a symmetric contact is symmetric.
          do i = 1, size(apart)
-            if (apart(i) <= (1.0_wp + alike)*minval(apart)) keep(max(order(i), order(i + 1))) = .false.
+            if (apart(i) > (1.0_wp + alike)*minval(apart)) cycle
+            associate (here => order(i), next => order(i + 1))
+               if (rank(here) == rank(next)) points(next) = 0.5_wp*(points(here) + points(next))
+               keep(merge(next, here, rank(next) > rank(here))) = .false.
+            end associate
          end do
       end do
    end subroutine choose_points

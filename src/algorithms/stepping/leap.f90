@@ -575,8 +575,10 @@ contains
       if (chain%node_wise > 0.0_wp) share = chain%work/chain%node_wise
       before = path%work
       do i = 1, chain%increments
+         ! Nodes that slip on stuck before this increment.
+         where (.not. (slips(chain%before(i)%status) .and. chain%before(i)%status == path%state%status)) &
+            path%state%stuck_slip = chain%before(i)%stuck_slip
          path%state%status = chain%before(i)%status
-         path%state%stuck_slip = chain%before(i)%stuck_slip
          call path%take_increment(chain%after(i), chain%after(i)%slip() - path%state%fields%slip(), 0.0_wp, &
                                   friction_work=share*chain%friction_work(:, i))
          call path%record_increment(interval, real(i, wp)/chain%increments)
