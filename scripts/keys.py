@@ -28,10 +28,15 @@ def main() -> int:
     text, heading, _ = PAGE.read_text(encoding="utf-8").partition(HEADING)
     if not heading:
         raise SystemExit(f"{PAGE.relative_to(ROOT)} has no heading '{HEADING.strip()}'")
-    outdated = {path: new for path, new in ((PAGE, text + heading + keys), (TEMPLATE, keys)) if path.read_text(encoding="utf-8") != new}
+    outdated = {
+        path: new for path, new in ((PAGE, text + heading + keys), (TEMPLATE, keys)) if path.read_text(encoding="utf-8") != new
+    }
     for path, new in outdated.items():
         if given.check:
-            print(f"{path.relative_to(ROOT)} is out of date: run build/venv/bin/python scripts/keys.py {given.programs}", file=sys.stderr)
+            print(
+                f"{path.relative_to(ROOT)} is out of date: run build/venv/bin/python scripts/keys.py {given.programs}",
+                file=sys.stderr,
+            )
         else:
             path.write_text(new, encoding="utf-8")
     return 1 if given.check and outdated else 0
