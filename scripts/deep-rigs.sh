@@ -1,5 +1,5 @@
 #!/bin/sh
-# Loops with the defects of rigs against mfv.identify: prints the table of docs/identify.md.
+# Loops with the defects of rigs against mfv.identify: prints the table of docs/verification.md.
 # Environment: MFV_RIGS_SEEDS (sets of noise for each defect, by default 100).
 . "$(dirname "$0")/common.sh"
 install_missing

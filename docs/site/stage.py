@@ -42,7 +42,7 @@ CONTENTS = {
         "Notebooks <examples/notebooks/README>",
         "docs/choosing",
     ],
-    "Reference": ["docs/namelist", "docs/studies", "docs/clusters", "docs/file-format", "programs"],
+    "Reference": ["docs/namelist", "docs/studies", "docs/file-format", "programs"],
     "Applications": ["docs/pad_to_life", "docs/joints", "docs/identify", "docs/fatigue"],
     "Interfaces": ["docs/python-api", "python/index", "docs/c-api", "c", "docs/fortran-api", "fortran/index"],
     "Background": [

@@ -114,6 +114,11 @@ def test_manual_pages_are_those_of_the_programs(tmp_path):
         )
 
 
+def test_tables_of_keys_are_those_of_the_catalogue():
+    done = subprocess.run([sys.executable, ROOT / "scripts/keys.py", "--check", BIN], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_manual_pages_have_every_key_and_option(page):
     text = page.read_text().replace(r"\-", "-")

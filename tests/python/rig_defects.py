@@ -2,7 +2,7 @@
 
     python tests/python/rig_defects.py [--seeds 100] [--only NAME]
 
-prints the table of docs/identify.md (scripts/deep-rigs.sh) and fails if a defect is served in less than 90 %: mu = 0.45, noise 0.5 %
+prints the table of docs/verification.md (scripts/deep-rigs.sh) and fails if a defect is served in less than 90 %: mu = 0.45, noise 0.5 %
 of the amplitudes of both columns, 200 rows a cycle, force to 0.7 mu P, a triangular and a sinusoidal cycle by turns. A defect is
 served if the truth is inside the 95 % interval of mu and of that of the stiffness of the rig, or if a warning names it.
 """
