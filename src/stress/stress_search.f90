@@ -7,7 +7,7 @@ module mfv_stress_search
    use mfv_surface_tractions, only: merged
    implicit none
    private
-   public :: largest_type, largest_von_mises, largest_tension, places_of_tension
+   public :: largest_type, largest_von_mises, largest_tension
 
    !> A largest stress, force/length^2, and where it is: x and y, length.
    type :: largest_type
@@ -141,21 +141,6 @@ contains
       largest = largest_type(value, point(1), point(2))
    end function largest_tension
 
-   !> Candidates with a tension that is almost the largest among them, arc lengths: where to look for it with finer elements.
-   function places_of_tension(interior) result(places)
-      type(interior_type), intent(in) :: interior
-      real(wp), allocatable :: places(:)
-      real(wp), allocatable :: values(:)
-      real(wp), parameter :: almost = 0.98_wp
-      integer :: i
-
-      allocate (places(0))
-      if (.not. interior%half_width() > 0.0_wp) return
-      places = candidates(interior)
-      values = [(tension_at(interior, places(i)), i=1, size(places))]
-      places = pack(places, values >= almost*maxval(values))
-   end function places_of_tension
-
    !> Candidate points for the largest tension, ascending: zone edges, some points between them, kinks of the shear, and points
    !> beside the contact at increasing distances.
    function candidates(interior) result(places)
@@ -210,7 +195,8 @@ contains
          if (von_mises) then
             stress_at = interior%surface_von_mises(arc)
          else
-            stress_at = tension_at(interior, arc)
+            stress_at = interior%surface_stress(arc)
+            if (interior%is_unresolved(arc)) stress_at = -huge(stress_at)
          end if
       end function stress_at
 
@@ -241,15 +227,6 @@ contains
          place = inner(maxloc(found, dim=1))
       end subroutine refine_between
    end subroutine refine_on_surface
-
-   !> Stress along the surface at an arc length; -huge where it is not resolved.
-   pure real(wp) function tension_at(interior, arc)
-      type(interior_type), intent(in) :: interior
-      real(wp), intent(in) :: arc
-
-      tension_at = interior%surface_stress(arc)
-      if (interior%is_unresolved(arc)) tension_at = -huge(tension_at)
-   end function tension_at
 
    !> Von Mises stress at a depth below the arc length `arc`, -1 outside the body.
    real(wp) function von_mises_at(interior, arc, depth)

@@ -27,8 +27,6 @@ module mfv_surface_tractions
       !> Minimum of elements in all contact zones: with fewer, the point of the largest von Mises stress, a flat maximum, would
       !> move to their ends.
       integer :: fewest_elements = 300
-      !> Arc lengths near which stresses are wanted: patches that contain none of them are coarse. Not allocated: all are fine.
-      real(wp), allocatable :: wanted(:)
    end type zone_list_type
 
    !> Elements from `from` to `to`, lengths, in ascending order, with p + i tau linear from `first` to `last`, force/length^2;
@@ -79,8 +77,6 @@ module mfv_surface_tractions
       logical :: counted = .false., graded = .false.
       !> Tractions up to this are zero, force/length^2.
       real(wp) :: nothing = 0.0_wp
-      !> Elements between an edge and the next node; lower limit of those in all.
-      integer :: beside_edge = 0, fewest = 0
    contains
       procedure :: tractions
    end type patch_type
@@ -99,7 +95,7 @@ contains
       logical, allocatable :: sharp(:, :)
       integer, allocatable :: owner(:)
       real(wp), parameter :: near = 1.0e-6_wp
-      integer, parameter :: fewest_in_zone = 60, beside_edge = 32, fewest_coarse = 20, beside_edge_coarse = 8
+      integer, parameter :: fewest_in_zone = 60
       integer, allocatable :: nodes(:)
       logical, allocatable :: done(:)
       type(traction_elements_type), allocatable :: parts(:)
@@ -126,17 +122,9 @@ contains
          patch%shear = shear(nodes)
          patch%contact = zone_type(edge=edges(:, i), rooted=.not. sharp(:, i), rest=table_type())
          patch%counted = i > size(zones%contact, 2)
-         patch%fewest = fewest
-         patch%beside_edge = beside_edge
-         if (allocated(zones%wanted)) then
-            if (.not. any(zones%wanted >= edges(1, i) .and. zones%wanted <= edges(2, i))) then
-               patch%fewest = fewest_coarse
-               patch%beside_edge = beside_edge_coarse
-            end if
-         end if
          call fit_patch(patch, zones)
          number = number + 1
-         call find_elements(patch, longest, parts(number))
+         call find_elements(patch, min(longest, (patch%contact%edge(2) - patch%contact%edge(1))/fewest), parts(number))
       end do
       elements%from = [(parts(k)%from, k=1, number)]
       elements%to = [(parts(k)%to, k=1, number)]
@@ -654,7 +642,7 @@ contains
       complex(wp), allocatable :: values(:)
       integer :: n
 
-      knots = knots_of(patch, min(longest, (patch%contact%edge(2) - patch%contact%edge(1))/patch%fewest))
+      knots = knots_of(patch, longest)
       n = size(knots)
       allocate (values(n), source=(0.0_wp, 0.0_wp))
       allocate (elements%edges(0))
@@ -699,7 +687,7 @@ contains
       do i = 2, size(points)
          left = knots(number)
          if (.not. points(i) > left) cycle
-         call append_between(left, points(i), roots, longest, patch%beside_edge, knots, number)
+         call append_between(left, points(i), roots, longest, knots, number)
          call append(knots, number, points(i:i))
       end do
       ! Between edges that differ by round-off there is no room for points.
@@ -762,13 +750,12 @@ contains
    !> Append the knots between two points: see knots_of. Beside a rooted edge their distances from it grow as the fifth power of
    !> their number: the error of the stress at the edge, where tractions go as a root, falls with the number to the power 2.5, as
    !> the root of the shortest element.
-   pure recursive subroutine append_between(left, right, roots, longest, parts, knots, number)
+   pure recursive subroutine append_between(left, right, roots, longest, knots, number)
       real(wp), intent(in) :: left, right, roots(:), longest
-      integer, intent(in) :: parts
       real(wp), allocatable, intent(inout) :: knots(:)
       integer, intent(inout) :: number
       real(wp), parameter :: most = 1000.0_wp
-      integer, parameter :: power = 5
+      integer, parameter :: parts = 32, power = 5
       real(wp) :: distance, middle
       logical :: is_root(2)
       integer :: i, pieces
@@ -777,9 +764,9 @@ contains
       if (all(is_root)) then
          middle = 0.5_wp*(left + right)
          if (.not. (middle > left .and. middle < right)) return
-         call append_between(left, middle, roots, longest, parts, knots, number)
+         call append_between(left, middle, roots, longest, knots, number)
          call append(knots, number, [middle])
-         call append_between(middle, right, roots, longest, parts, knots, number)
+         call append_between(middle, right, roots, longest, knots, number)
       else if (is_root(1)) then
          call append(knots, number, [(left + (right - left)*(real(i, wp)/parts)**power, i=1, parts - 1)])
       else if (is_root(2)) then

@@ -7,7 +7,7 @@ module mfv_state_interior
    use mfv_interior, only: has_interior, interior_type
    use mfv_kinds, only: certified, wp
    use mfv_motions, only: bulk_motions
-   use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises, places_of_tension
+   use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
    use mfv_zone_edges, only: find_patches, patch_type
    implicit none
    private
@@ -16,15 +16,14 @@ module mfv_state_interior
 contains
 
    !> The lower or `upper` body under the tractions and the bulk stress of a state; `available`: false for a rigid body and a
-   !> matrix. `fewest_elements`, `wanted`: see mfv_surface_tractions.
-   subroutine state_interior(model, state, upper, interior, available, fewest_elements, wanted)
+   !> matrix. `fewest_elements`: see mfv_surface_tractions.
+   subroutine state_interior(model, state, upper, interior, available, fewest_elements)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       logical, intent(in) :: upper
       type(interior_type), intent(out) :: interior
       logical, intent(out) :: available
       integer, intent(in), optional :: fewest_elements
-      real(wp), intent(in), optional :: wanted(:)
       real(wp), dimension(model%nodes()) :: contact_edge, stick_edge
       type(corner_type), allocatable :: corners(:)
       integer :: i
@@ -35,7 +34,7 @@ contains
       call find_edges_at_nodes(model, state, contact_edge, stick_edge)
       call model%scene%interior(upper, model%arc, model%width, state%fields%pressure, state%fields%shear, contact_edge, &
                                 stick_edge, state%fields%motion(bulk_motions(merge(2, 1, upper))), interior, &
-                                available, fewest_elements, wanted)
+                                available, fewest_elements)
       corners = corners_of(model, state)
       allocate (interior%unresolved(2, size(corners)))
       do i = 1, size(corners)
@@ -51,8 +50,6 @@ contains
       type(largest_type), intent(out) :: largest
       logical, intent(out) :: available
       type(interior_type) :: interior
-      real(wp), allocatable :: places(:)
-      logical :: several
 
       ! Pressure only compresses a straight surface.
       available = model%scene%can_have_bulk_stress(upper) .and. &
@@ -63,19 +60,7 @@ contains
          largest%y = largest%x
          return
       end if
-      associate (touches => state%fields%pressure > 0.0_wp)
-         several = count(touches(2:) .and. .not. touches(:size(touches) - 1)) > 1
-      end associate
-      if (several) then
-         ! Coarse elements tell in which patches to look for it.
-         allocate (places(0))
-         call state_interior(model, state, upper, interior, available, wanted=places)
-         if (.not. available) return
-         places = places_of_tension(interior)
-         call state_interior(model, state, upper, interior, available, wanted=places)
-      else
-         call state_interior(model, state, upper, interior, available)
-      end if
+      call state_interior(model, state, upper, interior, available)
       if (available) largest = largest_tension(interior)
    end subroutine find_largest_tension
 

@@ -409,9 +409,9 @@ contains
    !> bodies and their forces are equal; arcs and tractions are not.
    !> `contact_edge`, `stick_edge`: edges of the zones between nodes, ascending at the nodes with finite values, the left and the
    !> right one of each zone in turn; shape (nodes). `bulk`: its bulk stress, force/length^2. `available`: false for a rigid body or
-   !> a given matrix. `fewest_elements`, `wanted`: see mfv_surface_tractions.
+   !> a given matrix. `fewest_elements`: see mfv_surface_tractions.
    subroutine interior(self, upper, arc, width, pressure, shear, contact_edge, stick_edge, bulk, inside, available, &
-                       fewest_elements, wanted)
+                       fewest_elements)
       class(scene_type), intent(in) :: self
       logical, intent(in) :: upper
       real(wp), intent(in), dimension(:) :: arc, width, pressure, shear, contact_edge, stick_edge
@@ -419,7 +419,6 @@ contains
       type(interior_type), intent(out) :: inside
       logical, intent(out) :: available
       integer, intent(in), optional :: fewest_elements
-      real(wp), intent(in), optional :: wanted(:)
       type(zone_list_type) :: zones
       real(wp) :: ratio
       integer :: i, side
@@ -437,7 +436,6 @@ contains
       zones%contact = ratio*zones%contact
       if (self%coupling == coupling_full) zones%beta = self%beta()
       if (present(fewest_elements)) zones%fewest_elements = fewest_elements
-      if (present(wanted)) allocate (zones%wanted, source=wanted)
       if (upper) then
          call new_interior(self%upper, upper, self%plane, self%mesh%radial, ratio*arc, ratio*width, pressure/ratio, &
                            shear/ratio, zones, inside, available)
