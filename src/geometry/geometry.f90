@@ -44,7 +44,6 @@ module mfv_geometry
       procedure :: circular
       procedure :: is_disk
       procedure :: is_hole
-      procedure :: is_flat
       procedure :: is_straight
       procedure :: is_sampled
       procedure :: is_pointed
@@ -157,14 +156,7 @@ contains
       is_hole = self%shape == shape_hole
    end function is_hole
 
-   !> Whether the surface is flat where it is.
-   elemental logical function is_flat(self)
-      class(geometry_type), intent(in) :: self
-
-      is_flat = self%shape == shape_half_plane .or. self%shape == shape_flat_punch
-   end function is_flat
-
-   !> Whether it is flat without an end.
+   !> Whether it is flat, without an end.
    elemental logical function is_straight(self)
       class(geometry_type), intent(in) :: self
 

@@ -203,7 +203,7 @@ contains
       !> Take the largest stress between two points if it is larger.
       subroutine refine_between(from, to)
          real(wp), intent(in) :: from, to
-         real(wp), parameter :: golden = 0.6180339887498949_wp, nearly = 1.0e-6_wp
+         real(wp), parameter :: golden = 0.6180339887498949_wp, nearly = 1.0e-5_wp
          real(wp) :: left, right, inner(2), found(2), least
 
          left = from

@@ -6,7 +6,7 @@ module mfv_resolution
    use mfv_contact_model, only: needs_equal_intervals
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
-   use mfv_motions, only: motion_approach, motion_rotation
+   use mfv_motions, only: motion_approach
    use mfv_node_status, only: holds, in_contact, slip_sign
    use mfv_observables, only: observable_count, observables
    use mfv_profile_sampling, only: find_missed, negligible_pressure, pressure_of_wave
@@ -414,28 +414,22 @@ contains
       end subroutine add
    end subroutine check_slip_zones
 
-   !> Zones without a node, which change the number of stick zones: of stick between neighbouring nodes that slip in opposite
-   !> directions, and of slip where the remaining friction inside a stick zone has a minimum, as at a former edge, that is smaller
-   !> than the error of tractions with m nodes in contact, about 1/m. And stick zones with few nodes between opposite slip, in which
-   !> the shear traction changes its sign: the stress along the surface would have no limit without them.
+   !> Stick zones without a node, between neighbouring nodes that slip in opposite directions, which change their number. (A maximum
+   !> of the shear near the friction limit inside a stick zone is no sign of a slip zone: former edges have one on any mesh.) And
+   !> stick zones with few nodes between opposite slip, in which the shear traction changes its sign: the stress along the surface
+   !> would have no limit without them.
    subroutine check_stick_zones(simulation, unresolved)
       type(simulation_type), intent(in) :: simulation
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
       type(zone_type), allocatable :: zones(:)
-      real(wp) :: ratio(0:simulation%contact%model%nodes() + 1)
       integer :: node
 
       associate (model => simulation%contact%model, state => simulation%contact%state)
          if (.not. model%tangential .or. .not. allocated(model%scene%friction%law)) return
-         ratio = 0.0_wp
-         where (in_contact(state%status) .and. state%fields%pressure > 0.0_wp) &
-            ratio(1:model%nodes()) = abs(state%fields%shear)/(model%static_friction*state%fields%pressure)
          do node = 1, model%nodes() - 1
-            if (slip_sign(state%status(node))*slip_sign(state%status(node + 1)) >= 0 .and. .not. &
-                (holds(state%status(node)) .and. .not. model%moves(motion_rotation) .and. &
-                 ratio(node) > max(1.0_wp - 1.0_wp/max(state%contact_nodes(), 1), ratio(node - 1), ratio(node + 1)))) cycle
-            call add_unresolved(unresolved, 'stick_zones', 'near x = '//to_text(model%x(node), 4)//' a stick or slip zone may '// &
-                                'have no node', 'use more nodes')
+            if (slip_sign(state%status(node))*slip_sign(state%status(node + 1)) >= 0) cycle
+            call add_unresolved(unresolved, 'stick_zones', 'near x = '//to_text(model%x(node), 4)//' a stick zone has no node', &
+                                'use more nodes')
             exit
          end do
          zones = zones_of(holds(state%status))
