@@ -78,7 +78,6 @@ contains
       integer, intent(in) :: group
       complex(wp), intent(in) :: ends(:, :), place(:, :), sigma(:, :), weight(:, :)
       complex(wp), dimension(size(place, 1), size(place, 2)) :: terms, shear, ratio
-      real(wp), dimension(size(place, 1), size(place, 2)) :: along, first, second
       integer :: k
 
       self%middle(group) = 0.5_wp*(ends(1, 1) + ends(2, size(ends, 2)))
@@ -87,13 +86,9 @@ contains
       terms = sigma*weight
       if (.not. any(abs(aimag(ratio)) > 0.0_wp)) then
          ! Along a straight surface shear moments are the imaginary parts.
-         along = real(ratio, wp)
-         first = real(terms, wp)
-         second = aimag(terms)
          do k = 0, most_moments
-            self%moments(k, group) = cmplx(sum_of(first), sum_of(second), wp)
-            first = first*along
-            second = second*along
+            self%moments(k, group) = sum(terms)
+            terms = terms*real(ratio, wp)
          end do
          self%shear_moments(:, group) = aimag(self%moments(:, group))
          return
@@ -105,21 +100,6 @@ contains
          terms = terms*ratio
          shear = shear*ratio
       end do
-
-   contains
-
-      !> Sum in vectors of the first dimension, which a compiler may not do for `sum`.
-      pure real(wp) function sum_of(values)
-         real(wp), intent(in) :: values(:, :)
-         real(wp) :: sums(size(values, 1))
-         integer :: j
-
-         sums = 0.0_wp
-         do j = 1, size(values, 2)
-            sums = sums + values(:, j)
-         end do
-         sum_of = sum(sums)
-      end function sum_of
    end subroutine add_leaf
 
    !> Middle, radius and moments of a group from those of its halves.

@@ -92,6 +92,19 @@ def test_a_second_signal_ends_the_program(tmp_path):
     assert run.returncode in (130, -signal.SIGTERM)  # 130: the result was written between the signals
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_yield_is_searched_for_on_many_nodes(seed, tmp_path):
+    random_number = random.Random(seed).uniform
+    (tmp_path / "case.nml").write_text(
+        "&body shape='half_plane', rigid=.true. /\n"
+        f"&body shape='disk', radius={random_number(0.3, 0.9)}, shear_modulus={random_number(50, 90)}, poisson_ratio=0.3, "
+        f"yield_strength=1e-3 /\n&mesh nodes=3001 /\n&step normal_force={random_number(0.005, 0.02)} /\n"
+    )
+    run = subprocess.run([PROGRAM, "case.nml"], cwd=tmp_path, capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    assert "exceeds its yield_strength" in run.stdout
+
+
 @pytest.mark.parametrize("blanks", ["", "   "])
 @pytest.mark.parametrize(
     "group",

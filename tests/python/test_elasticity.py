@@ -48,6 +48,31 @@ def test_it_tends_to_the_disk_as_the_contact_shrinks() -> None:
     assert differences[2] < 0.6 * differences[1] < 0.36 * differences[0]
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_upside_down_and_mirrored(seed: int) -> None:
+    """Random pairs of disks of which one or both deform as half-planes: the order of the bodies and the side do not matter."""
+    draw = np.random.default_rng(seed)
+    bodies = [
+        Body.disk(
+            draw.uniform(10.0, 100.0),
+            youngs_modulus=draw.uniform(50e3, 200e3),
+            poisson_ratio=draw.uniform(0.1, 0.45),
+            elasticity="half_plane" if seed % 2 or number else "own",
+        )
+        for number in range(2)
+    ]
+
+    def numbers(lower: Body, upper: Body, side: float) -> list[float]:
+        steps = [Step(normal_force=200.0), Step(tangential_force=60.0 * side), Step(tangential_force=-45.0 * side)]
+        found = Scene(lower, upper, steps=steps, friction=Friction.coulomb(0.5), mesh=Mesh(nodes=45)).run(check=True).observables
+        tensions = [found.lower_tension, found.upper_tension][:: 1 if lower is bodies[0] else -1]
+        return [found.approach, found.peak_pressure, found.peak_shear, found.dissipation, found.stick_ratio, *tensions]
+
+    here = numbers(*bodies, 1.0)
+    assert numbers(*bodies, -1.0) == pytest.approx(here, rel=1e-7)
+    assert numbers(*bodies[::-1], 1.0) == pytest.approx(here, rel=1e-7)
+
+
 @pytest.mark.parametrize(
     ("body", "what"),
     [

@@ -12,7 +12,7 @@ module mfv_resolution
    use mfv_profile_sampling, only: find_missed, negligible_pressure, pressure_of_wave
    use mfv_simulation, only: simulation_type
    use mfv_slip_zones, only: contact_interval, hidden_width_at_edge, needed_mesh, nodes_at_edge, resolved_nodes, slip_record_type
-   use mfv_strings, only: add_text, has_word, string_type, to_text
+   use mfv_strings, only: has_word, to_text
    use mfv_zone_edges, only: find_zone_edges, zone_edges_type, zone_type, zones_of
    implicit none
    private

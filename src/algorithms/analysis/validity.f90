@@ -2,7 +2,6 @@
 module mfv_validity
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_body, only: body_type
-   use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
    use mfv_kinds, only: pi, wp
    use mfv_load_extremes, only: most_rows
