@@ -1,13 +1,13 @@
 !> Discretisation error of nodal tractions next to a contact edge: the two solutions of the discrete equations there.
 !>
 !> Tractions are uniform on equal intervals of a half-plane, and displacements are those at the middles. At the edge tractions
-!> vanish as the distance to the power m. Far from everything else the discrete equations have two solutions, g(j) and k(j), j
-!> = 0 at the outermost node, with the asymptotes u^m and u^(m-1), u = j + offset. g + 2 m r k is the discrete traction for
-!> d^m with an edge offset + 2 r intervals outwards from the outermost node. They follow from the Wiener-Hopf factors of the
-!> symbol (docs/theory.md, edges between nodes).
+!> vanish as the distance to the power m. The discrete equations have the solutions k(j), g(j) and h(j), j = 0 at the outermost
+!> node, with the asymptotes u^(m-1), u^m and u^(m+1), u = j + offset: the discrete tractions of an edge that lies `offset`
+!> intervals outwards, and of its shift. They follow from the Wiener-Hopf factors of the symbol (docs/theory.md, edges between
+!> nodes). The tractions of three nodes give their factors, and these the edge.
 !>
-!> On unequal intervals, where displacements are means, the two solutions and that for d^(m+1) follow from the equations of the
-!> outermost intervals: the difference from the means of the exact tractions decays inwards.
+!> On unequal intervals, where displacements are means, the three solutions follow from the equations of the outermost intervals:
+!> the difference from the means of the exact tractions decays inwards.
 module mfv_edge_solutions
    use mfv_kinds, only: pi, wp
    use mfv_lapack, only: dgesv
@@ -18,8 +18,8 @@ module mfv_edge_solutions
 
    !> Exponents for which the solutions are tabulated.
    real(wp), parameter :: least_power = 0.29_wp, most_power = 0.71_wp
-   !> Exact tractions are the distance to the power m - 1, m and m + 1.
-   integer, parameter :: terms = 3
+   !> Exact tractions are the distance to the power m - 1, m and m + 1. Nodes, from 0, to which solutions are tabulated.
+   integer, parameter :: terms = 3, most_tabulated = 4
 
    !> Discrete tractions of the outermost unequal intervals; `unit`: their total width, length.
    type :: graded_solution_type
@@ -35,83 +35,84 @@ module mfv_edge_solutions
 contains
 
    !> `distance` of the edge, in intervals outwards from the outermost node, where tractions vanish with the exponent `power`.
-   !> `values`: tractions at five or more nodes to the inverse exponent, outermost first; `inwards`: their distances from that
-   !> node. With the edge g + 2 m r k, to the inverse exponent, fits the second to fourth value (third to fifth with exponents
-   !> below 1/2, where k is irregular) by a parabola without a linear term; `otherwise`: the third to fifth (second to fourth). Of
-   !> several such edges the one nearest to `distance` at first, which stays if none is `found`.
-   pure subroutine find_solved_distance(inwards, values, power, otherwise, distance, found)
-      real(wp), intent(in) :: inwards(0:), values(0:), power
-      logical, intent(in) :: otherwise
+   !> `tractions`: at the outermost nodes, outermost first; those of the nodes `first` (0 or 1) to first + 2 are used. `distance` is
+   !> unchanged if no edge is `found` in the interval of the outermost node or the next.
+   pure subroutine find_solved_distance(tractions, power, first, distance, found)
+      real(wp), intent(in) :: tractions(0:), power
+      integer, intent(in) :: first
       real(wp), intent(inout) :: distance
       logical, intent(out) :: found
-      integer, parameter :: steps = 22, halvings = 40
-      real(wp), parameter :: least = -0.6_wp, step = 0.1_wp
-      real(wp) :: guess, left, right, middle, at_left, at_right, offset, g(4), k(4)
-      integer :: first, i, j
+      real(wp), parameter :: nearest = -0.6_wp, farthest = 1.6_wp
+      real(wp) :: offset, g(0:most_tabulated), k(0:most_tabulated), h(0:most_tabulated - 1), edge
 
-      call find_edge_solutions(power, offset, g, k)
-      first = merge(2, 1, power < 0.5_wp .neqv. otherwise)
-      guess = distance
       found = .false.
-      at_right = misfit(least)
-      do i = 1, steps
-         left = least + (i - 1)*step
-         right = left + step
-         at_left = at_right
-         at_right = misfit(right)
-         if (at_left*at_right > 0.0_wp .or. .not. abs(at_left) > 0.0_wp) cycle
-         do j = 1, halvings
-            middle = 0.5_wp*(left + right)
-            if (at_left*misfit(middle) > 0.0_wp) then
-               left = middle
-            else
-               right = middle
-            end if
-         end do
-         if (.not. found .or. abs(middle - guess) < abs(distance - guess)) distance = middle
-         found = .true.
-      end do
+      if (size(tractions) < first + terms) return
+      call find_edge_solutions(power, offset, g, k, h)
+      associate (last => first + terms - 1)
+         edge = offset + shift_of_edge(factors_of(reshape([k(first:last), g(first:last), h(first:last)], [terms, terms]), &
+                                                  tractions(first:last)), power)
+      end associate
+      found = edge >= nearest .and. edge <= farthest
+      if (found) distance = edge
+   end subroutine find_solved_distance
+
+   !> Factors of the columns of a matrix in `values`, by Cramer's rule.
+   pure function factors_of(columns, values) result(factors)
+      real(wp), intent(in) :: columns(terms, terms), values(terms)
+      real(wp) :: factors(terms)
+
+      factors = [volume(values, columns(:, 2), columns(:, 3)), volume(columns(:, 1), values, columns(:, 3)), &
+                 volume(columns(:, 1), columns(:, 2), values)]/volume(columns(:, 1), columns(:, 2), columns(:, 3))
 
    contains
 
-      !> Determinant of the three values, those of the discrete solution with the edge at `edge`, and the squared distances.
-      pure real(wp) function misfit(edge)
-         real(wp), intent(in) :: edge
-         real(wp) :: discrete(3), square(3)
+      pure real(wp) function volume(a, b, c)
+         real(wp), intent(in) :: a(terms), b(terms), c(terms)
 
-         associate (value => values(first:first + 2), last => first + 2)
-            discrete = max(g(first:last) + power*(edge - offset)*k(first:last), 0.0_wp)
-            if (abs(power - 0.5_wp) > 0.0_wp) then
-               discrete = discrete**(1.0_wp/power)
-            else
-               discrete = discrete**2
-            end if
-            square = (inwards(first:last) + edge)**2
-            misfit = value(1)*(discrete(2)*square(3) - discrete(3)*square(2)) &
-                     - value(2)*(discrete(1)*square(3) - discrete(3)*square(1)) &
-                     + value(3)*(discrete(1)*square(2) - discrete(2)*square(1))
-         end associate
-      end function misfit
-   end subroutine find_solved_distance
+         volume = a(1)*(b(2)*c(3) - b(3)*c(2)) - a(2)*(b(1)*c(3) - b(3)*c(1)) + a(3)*(b(1)*c(2) - b(2)*c(1))
+      end function volume
+   end function factors_of
 
-   !> Offset and the two solutions for j = 1 to 4 for an exponent, interpolated in the table to 1e-5, k to 6e-4. Verified by
+   !> How far an edge lies outwards, from factors of the powers m - 1, m and m + 1 of the distance from a place near it: tractions
+   !> a (d + s)^m + b (d + s)^(m+1), a >= 0, have the factors m a s + m (m+1)/2 b s^2, a + (m+1) b s and b. Where that has no
+   !> solution a is 0: the edge of a zone that has grown.
+   pure real(wp) function shift_of_edge(factors, power) result(shift)
+      real(wp), intent(in) :: factors(terms), power
+      real(wp) :: discriminant
+
+      discriminant = (power*factors(2))**2 - 2.0_wp*power*(power + 1.0_wp)*factors(1)*factors(3)
+      if (discriminant > 0.0_wp) then
+         shift = 2.0_wp*factors(1)/(power*factors(2) + sqrt(discriminant))
+      else
+         shift = factors(2)/((power + 1.0_wp)*factors(3))
+      end if
+   end function shift_of_edge
+
+   !> Offset and the three solutions from j = 0 on for an exponent, interpolated in the table to 3e-5, k to 9e-4. Verified by
    !> tests/python/test_edge_solutions.py.
-   pure subroutine find_edge_solutions(power, offset, g, k)
+   pure subroutine find_edge_solutions(power, offset, g, k, h)
       real(wp), intent(in) :: power
-      real(wp), intent(out) :: offset, g(4), k(4)
-      integer, parameter :: powers = 7
+      real(wp), intent(out) :: offset, g(0:most_tabulated), k(0:most_tabulated), h(0:most_tabulated - 1)
+      integer, parameter :: powers = 7, numbers = 3*(most_tabulated + 1)
       integer :: i
       real(wp), parameter :: tabulated(powers) = [(least_power + (i - 1)*(most_power - least_power)/(powers - 1), i=1, powers)]
-      real(wp), parameter :: solutions(9, powers) = reshape([ &
-              0.860699_wp, 1.175358_wp, 1.370073_wp, 1.481191_wp, 1.584615_wp, 0.150503_wp, 0.671431_wp, 0.383166_wp, 0.356635_wp, &
-              0.841320_wp, 1.246079_wp, 1.464396_wp, 1.626871_wp, 1.767032_wp, 0.544208_wp, 0.606435_wp, 0.451321_wp, 0.389337_wp, &
-              0.829380_wp, 1.304766_wp, 1.570424_wp, 1.785116_wp, 1.970880_wp, 0.725241_wp, 0.617810_wp, 0.499283_wp, 0.432011_wp, &
-              0.825347_wp, 1.361029_wp, 1.686648_wp, 1.959477_wp, 2.199223_wp, 0.813172_wp, 0.651237_wp, 0.545658_wp, 0.479493_wp, &
-              0.829380_wp, 1.420521_wp, 1.814357_wp, 2.153109_wp, 2.456090_wp, 0.858901_wp, 0.690941_wp, 0.594302_wp, 0.531546_wp, &
-              0.841320_wp, 1.486743_wp, 1.955829_wp, 2.369472_wp, 2.746252_wp, 0.885941_wp, 0.732947_wp, 0.646318_wp, 0.588719_wp, &
-             0.860699_wp, 1.562005_wp, 2.113650_wp, 2.612415_wp, 3.075201_wp, 0.905789_wp, 0.776965_wp, 0.702486_wp, 0.651810_wp], &
-                                                            [9, powers])
-      real(wp) :: found(9)
+      real(wp), parameter :: solutions(numbers, powers) = reshape([ &
+              0.860695_wp, 1.131712_wp, 1.175358_wp, 1.370073_wp, 1.481191_wp, 1.584615_wp, 3.902455_wp, 0.150503_wp, &
+              0.671431_wp, 0.383166_wp, 0.356636_wp, 0.888756_wp, 2.224138_wp, 3.887139_wp, 5.714474_wp, &
+              0.841318_wp, 1.050164_wp, 1.246079_wp, 1.464396_wp, 1.626871_wp, 1.767032_wp, 2.917122_wp, 0.544208_wp, &
+              0.606435_wp, 0.451321_wp, 0.389337_wp, 0.836153_wp, 2.298324_wp, 4.144050_wp, 6.239622_wp, &
+              0.829379_wp, 0.992912_wp, 1.304766_wp, 1.570424_wp, 1.785116_wp, 1.970880_wp, 2.309098_wp, 0.725241_wp, &
+              0.617810_wp, 0.499283_wp, 0.432011_wp, 0.787493_wp, 2.377132_wp, 4.429284_wp, 6.824514_wp, &
+              0.825347_wp, 0.954443_wp, 1.361029_wp, 1.686648_wp, 1.959477_wp, 2.199223_wp, 1.908886_wp, 0.813172_wp, &
+              0.651237_wp, 0.545658_wp, 0.479493_wp, 0.745653_wp, 2.465140_wp, 4.748367_wp, 7.481311_wp, &
+              0.829381_wp, 0.930947_wp, 1.420520_wp, 1.814357_wp, 2.153109_wp, 2.456090_wp, 1.633240_wp, 0.858901_wp, &
+              0.690941_wp, 0.594302_wp, 0.531546_wp, 0.714741_wp, 2.568254_wp, 5.109283_wp, 8.224694_wp, &
+              0.841323_wp, 0.919740_wp, 1.486742_wp, 1.955828_wp, 2.369472_wp, 2.746252_wp, 1.437094_wp, 0.885941_wp, &
+              0.732947_wp, 0.646318_wp, 0.588719_wp, 0.699530_wp, 2.693808_wp, 5.522535_wp, 9.072576_wp, &
+              0.860702_wp, 0.918895_wp, 1.562005_wp, 2.113650_wp, 2.612415_wp, 3.075200_wp, 1.294218_wp, 0.905789_wp, &
+              0.776965_wp, 0.702486_wp, 0.651810_wp, 0.704795_wp, 2.850233_wp, 6.000967_wp, 10.046406_wp], &
+                                                                  [numbers, powers])
+      real(wp) :: found(numbers)
       logical :: others(powers)
 
       found = 0.0_wp
@@ -121,8 +122,11 @@ contains
          found = found + solutions(:, i)*product((power - tabulated)/(tabulated(i) - tabulated), mask=others)
       end do
       offset = found(1)
-      g = found(2:5)
-      k = found(6:9)
+      associate (n => most_tabulated + 1)
+         g = found(2:n + 1)
+         k = found(n + 2:2*n + 1)
+         h = found(2*n + 2:)
+      end associate
    end subroutine find_edge_solutions
 
    !> Discrete traction over d^power at the nodes j = 1, 2, ..., for an edge `distance` intervals outwards from the outermost
@@ -131,15 +135,15 @@ contains
       real(wp), intent(in) :: power, distance
       integer, intent(in) :: nodes
       real(wp) :: ratio(nodes)
-      real(wp) :: offset, g(4), k(4)
+      real(wp) :: offset, g(0:most_tabulated), k(0:most_tabulated), h(0:most_tabulated - 1)
       integer :: j
 
-      call find_edge_solutions(power, offset, g, k)
+      call find_edge_solutions(power, offset, g, k, h)
       do j = 1, nodes
-         if (j <= 4) then
+         if (j <= most_tabulated) then
             ratio(j) = (g(j) + power*(distance - offset)*k(j))/(j + distance)**power
          else
-            ratio(j) = 1.0_wp + (ratio(4) - 1.0_wp)*((4 + distance)/(j + distance))**2
+            ratio(j) = 1.0_wp + (ratio(most_tabulated) - 1.0_wp)*((most_tabulated + distance)/(j + distance))**2
          end if
       end do
       where (.not. ratio > 0.5_wp) ratio = 1.0_wp
@@ -239,17 +243,11 @@ contains
       real(wp), intent(in) :: tractions(:), beyond
       real(wp), intent(out) :: distance
       logical, intent(out) :: found
-      real(wp) :: matrix(terms, terms), factors(terms)
-      integer :: pivots(terms), code
 
       found = .false.
       distance = 0.0_wp
       if (size(self%discrete, 1) < terms) return
-      matrix = self%discrete(:terms, :)
-      factors = tractions(:terms)
-      call dgesv(terms, 1, matrix, terms, pivots, factors, terms, code)
-      if (code /= 0 .or. .not. factors(2) > 0.0_wp) return
-      distance = self%unit*factors(1)/(self%power*factors(2))
+      distance = self%unit*shift_of_edge(factors_of(self%discrete(:terms, :), tractions(:terms)), self%power)
       associate (outermost => self%unit*self%ends(1))
          found = distance >= -outermost .and. distance <= max(outermost, beyond)
       end associate

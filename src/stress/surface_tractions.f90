@@ -200,7 +200,7 @@ contains
    !> Contact edges between the nodes, if the discretisation error is known.
    subroutine locate_edges(patch)
       type(patch_type), intent(inout) :: patch
-      real(wp) :: values(size(patch%arc)), inwards(size(patch%arc)), distance
+      real(wp) :: distance
       integer :: nodes(size(patch%arc)), i, n, side
       logical :: found
 
@@ -208,10 +208,8 @@ contains
       do side = 1, 2
          if (.not. (patch%contact%rooted(side) .and. patch%contact%known(side))) cycle
          nodes = [(merge(i, n + 1 - i, side == 1), i=1, n)]
-         inwards = abs(patch%arc(nodes) - patch%arc(nodes(1)))/patch%width(nodes(1))
-         values = (patch%pressure(nodes)/maxval(patch%pressure))**(1.0_wp/patch%contact%power(side))
          distance = 0.5_wp
-         call find_solved_distance(inwards, values, patch%contact%power(side), .false., distance, found)
+         call find_solved_distance(patch%pressure(nodes), patch%contact%power(side), 0, distance, found)
          patch%contact%edge(side) = patch%arc(nodes(1)) + (2*side - 3)*patch%width(nodes(1))*distance
       end do
    end subroutine locate_edges

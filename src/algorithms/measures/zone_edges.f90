@@ -66,8 +66,6 @@ module mfv_zone_edges
    !> Uncertainty of an edge, intervals (docs/verification.md): at least, of contact and of stick zones; of an edge that cannot be
    !> located between nodes.
    real(wp), parameter :: least_error = 0.002_wp, least_stick_error = 0.005_wp, error_if_unknown = 0.5_wp
-   !> With coupling, number of slipping nodes next to an edge from which its discretisation error is known.
-   integer, parameter :: fewest_slipping = 6
 
    !> A traction near an edge: values at the outermost nodes of a zone, outermost first, and their distances from the first
    !> one, in intervals; or the integrals of the traction from the edge to the inner ends of these intervals.
@@ -75,7 +73,7 @@ module mfv_zone_edges
       !> Number of values, and of nodes in the whole zone.
       integer :: number = 0, zone = 0
       real(wp) :: inwards(0:most_samples - 1) = 0.0_wp, value(0:most_samples - 1) = 0.0_wp
-      !> Of unequal intervals, those of the whole zone: tractions and widths, in intervals.
+      !> Tractions of the outermost nodes; of unequal intervals those of the whole zone, and widths, in intervals.
       real(wp), allocatable :: traction(:), width(:)
       !> Width of the interval beyond the outermost one, in which the edge can be.
       real(wp) :: beyond = 0.0_wp
@@ -298,8 +296,7 @@ contains
       error = 0.0_wp
       if (merge(patch%right_ends, patch%left_ends, side > 0)) return
       samples = sampled(model, state%fields%pressure, outermost, merge(patch%first, patch%last, side > 0))
-      if (.not. model%compliance%elastic_block(block_wt) .or. slipping_run(state, outermost, -side) >= fewest_slipping) &
-         samples%is_regular = has_known_error(model, outermost, samples%number)
+      samples%is_regular = has_known_error(model, outermost, samples%number)
       samples = straightened(samples, merge(patch%right_power, patch%left_power, side > 0))
       edge = model%arc(outermost) + side*model%width(outermost)*refined_distance(samples)
       error = model%width(outermost)*uncertainty(samples)
@@ -379,7 +376,7 @@ contains
       end if
       power = 0.5_wp - side*exponent_shift(model, next, direction*model%kinetic_friction(next))
       samples = sampled(model, lack, last, other)
-      if (.not. model%compliance%elastic_block(block_wt)) samples%is_regular = has_known_error(model, last, samples%number)
+      samples%is_regular = has_known_error(model, last, samples%number)
       edge = model%arc(last) + side*model%width(last)*distance_of_lack(samples, power)
       error = max(least, model%width(last)*max(uncertainty(straightened(samples, power)), least_stick_error))
       if (last == patch_end) then
@@ -453,6 +450,7 @@ contains
             samples%inwards(i) = abs(model%arc(outermost + side*i) - model%arc(outermost))/unit
          end do
          samples%is_integral = allocated(model%scene%mesh%ends)
+         samples%traction = samples%value(:samples%number - 1)
          if (.not. samples%is_integral) return
          samples%traction = traction(outermost:other:side)
          samples%width = model%width(outermost:other:side)/unit
@@ -597,7 +595,7 @@ contains
    logical function has_known_error(model, node, samples)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: node, samples
-      integer, parameter :: about = 2, fewest = 5
+      integer, parameter :: about = 2, fewest = 3
       real(wp), parameter :: near = 5.0e-3_wp
       !> (C(0) - C(1))/(C(1) - C(2)), C(j) = (j - 1/2) ln|j - 1/2| - (j + 1/2) ln(j + 1/2).
       real(wp), parameter :: ratio = 1.5_wp*log(3.0_wp)/(2.5_wp*log(2.5_wp) - 3.0_wp*log(1.5_wp) - 0.5_wp*log(2.0_wp))
@@ -625,7 +623,7 @@ contains
       if (samples%is_integral) then
          call find_graded_distance(samples, distance, found)
       else
-         call find_solved_distance(samples%inwards, samples%value, samples%power, .false., distance, found)
+         call find_solved_distance(samples%traction, samples%power, 0, distance, found)
       end if
    end function refined_distance
 
@@ -650,9 +648,9 @@ contains
       real(wp), parameter :: by_largest = 0.005_wp
       !> Beyond it the next node would be in contact: the traction does not vanish as a root.
       real(wp), parameter :: farthest = 1.35_wp
-      !> The error of the fit through the second to fourth node over the difference from that of the third to fifth, whose error is
-      !> 2.7 times as large: errors are in proportion to the product of the distances.
-      real(wp), parameter :: of_difference = 0.6_wp
+      !> The errors of two fits are in proportion to the products of the distances of their nodes from the edge: that of the outermost
+      !> three nodes, the first at the distance d, is d/3 of the difference from that of the second to fourth node, here a half more.
+      real(wp), parameter :: of_difference = 0.5_wp, least_distance = 0.5_wp
       real(wp) :: near, farther
       logical :: found(2)
 
@@ -660,13 +658,11 @@ contains
       if (samples%is_integral) uncertainty = uncertainty + by_largest*maxval(samples%width)**2/sum(samples%width)
       if (samples%is_regular) then
          if (samples%is_integral) return
-         near = distance_to_zero(samples, .false.)
-         call find_solved_distance(samples%inwards, samples%value, samples%power, .false., near, found(1))
-         farther = near
-         call find_solved_distance(samples%inwards, samples%value, samples%power, .true., farther, found(2))
          uncertainty = error_if_unknown
+         call find_solved_distance(samples%traction, samples%power, 0, near, found(1))
+         call find_solved_distance(samples%traction, samples%power, 1, farther, found(2))
          if (all(found) .and. near < farthest) &
-            uncertainty = min(max(least_error, of_difference*abs(farther - near)), error_if_unknown)
+            uncertainty = min(max(least_error, of_difference*max(near, least_distance)*abs(farther - near)), error_if_unknown)
          return
       end if
       uncertainty = error_if_unknown
