@@ -559,7 +559,7 @@ contains
       logical, intent(in) :: has_receded
       type(patch_type), intent(inout) :: patches(:)
       !> In intervals; the last one where fewer than two nodes slip beside the stick zone.
-      real(wp), parameter :: coupled = 0.02_wp, receded = 0.5_wp, grown = 0.2_wp, grown_to_end = 0.5_wp
+      real(wp), parameter :: coupled = 0.02_wp, receded = 0.5_wp, grown = 0.2_wp, grown_to_end = 0.25_wp
       integer, parameter :: fewest_alike = 4
       logical :: can_grow, depends_on_friction
       integer :: i, j

@@ -304,6 +304,8 @@ contains
       logical, intent(in) :: upper
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
       type(zone_edges_type) :: edges
+      !> Of an edge so near to where the pressure begins to vanish, intervals.
+      real(wp), parameter :: edge_uncertainty = 0.5_wp
       type(body_type) :: body
       real(wp) :: width, interval
 
@@ -318,7 +320,7 @@ contains
          call add_unresolved(unresolved, all_quantities(simulation), 'the rounded edges of the '// &
                              merge('upper', 'lower', upper)//' body are in contact over a width of '//to_text(width, 3)//', '// &
                              to_text(width/interval, 2)//' intervals', 'use '// &
-                             trim(needed_mesh(model, state, width, resolved_nodes)))
+                             trim(needed_mesh(model, state, max(width - edge_uncertainty*interval, 0.5_wp*width), resolved_nodes)))
       end associate
    end subroutine check_rounded_edges
 

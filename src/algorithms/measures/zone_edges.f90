@@ -63,9 +63,8 @@ module mfv_zone_edges
    !> Largest number of nodes to extrapolate from.
    integer, parameter :: most_samples = 7
    real(wp), parameter :: unknown_bend = 1.0e10_wp
-   !> Uncertainty of an edge, intervals (docs/verification.md): at least, of contact and of stick zones; of an edge that cannot be
-   !> located between nodes.
-   real(wp), parameter :: least_error = 0.002_wp, least_stick_error = 0.005_wp, error_if_unknown = 0.5_wp
+   !> Uncertainty of an edge, intervals (docs/verification.md): at least; of an edge that cannot be located between nodes.
+   real(wp), parameter :: least_error = 0.001_wp, error_if_unknown = 0.5_wp
 
    !> A traction near an edge: values at the outermost nodes of a zone, outermost first, and their distances from the first
    !> one, in intervals; or the integrals of the traction from the edge to the inner ends of these intervals.
@@ -339,7 +338,7 @@ contains
       type(patch_type), intent(in) :: patch
       integer, intent(in) :: side
       real(wp), intent(out) :: edge, error
-      real(wp) :: lack(size(state%status)), power, direction, widest, least
+      real(wp) :: lack(size(state%status)), power, direction, widest, least, distance
       type(samples_type) :: samples
       integer :: last, next, other, patch_end
 
@@ -377,8 +376,9 @@ contains
       power = 0.5_wp - side*exponent_shift(model, next, direction*model%kinetic_friction(next))
       samples = sampled(model, lack, last, other)
       samples%is_regular = has_known_error(model, last, samples%number)
-      edge = model%arc(last) + side*model%width(last)*distance_of_lack(samples, power)
-      error = max(least, model%width(last)*max(uncertainty(straightened(samples, power)), least_stick_error))
+      call find_distance_of_lack(samples, power, distance, error)
+      edge = model%arc(last) + side*model%width(last)*distance
+      error = max(least, model%width(last)*error)
       if (last == patch_end) then
          associate (end => merge(patch%right, patch%left, side > 0))
             edge = side*max(side*edge, side*end - widest)
@@ -464,19 +464,21 @@ contains
       end associate
    end function sampled
 
-   !> Where the remaining friction vanishes, in intervals outwards from the outermost node. The exponent is `power` or, behind
-   !> a growing stick zone, larger by one: in long zones that with the straighter fit, and in between a weighted mean, so that
-   !> rounding errors do not decide. Short zones, and unequal intervals with a discrete solution: `power`.
-   real(wp) function distance_of_lack(samples, power) result(distance)
+   !> Where the remaining friction vanishes, in intervals outwards from the outermost node, and the uncertainty of that. The
+   !> exponent is `power` or, behind a growing stick zone, larger by one: in long zones that with the straighter fit, and in between
+   !> a weighted mean, so that rounding errors do not decide. Short zones, and unequal intervals with a discrete solution: `power`.
+   subroutine find_distance_of_lack(samples, power, distance, error)
       type(samples_type), intent(in) :: samples
       real(wp), intent(in) :: power
+      real(wp), intent(out) :: distance, error
       integer, parameter :: short = 8, steepness = 4
       real(wp), parameter :: clearly = 2.0_wp
       type(samples_type) :: straight
-      real(wp) :: steady, grown, weight
+      real(wp) :: steady, grown, weight, of_grown
       logical :: found
 
       straight = straightened(samples, power)
+      error = uncertainty(straight)
       if (straight%is_integral .and. straight%is_regular) then
          call find_graded_distance(straight, distance, found)
          if (found) return
@@ -486,10 +488,12 @@ contains
       weight = 0.0_wp
       if (min(steady, grown) < unknown_bend) weight = min(max((samples%zone - short)/real(short, wp), 0.0_wp), 1.0_wp) &
                                                       *steady**steepness/(steady**steepness + grown**steepness)
-      distance = 0.0_wp
-      if (weight < 1.0_wp) distance = (1.0_wp - weight)*refined_distance(straight)
-      if (weight > 0.0_wp) distance = distance + weight*distance_to_zero(straightened(samples, power + 1.0_wp), .true.)
-   end function distance_of_lack
+      distance = refined_distance(straight)
+      if (.not. weight > 0.0_wp) return
+      of_grown = distance_to_zero(straightened(samples, power + 1.0_wp), .true.)
+      error = max((1.0_wp - weight)*(error + weight*abs(of_grown - distance)), least_error)
+      distance = distance + weight*(of_grown - distance)
+   end subroutine find_distance_of_lack
 
    !> Deviation of the second to fourth value from a straight line, relative to their change; `unknown_bend` for fewer or
    !> decreasing values.
@@ -648,9 +652,9 @@ contains
       real(wp), parameter :: by_largest = 0.005_wp
       !> Beyond it the next node would be in contact: the traction does not vanish as a root.
       real(wp), parameter :: farthest = 1.35_wp
-      !> The errors of two fits are in proportion to the products of the distances of their nodes from the edge: that of the outermost
-      !> three nodes, the first at the distance d, is d/3 of the difference from that of the second to fourth node, here a half more.
-      real(wp), parameter :: of_difference = 0.5_wp, least_distance = 0.5_wp
+      !> The errors of two fits are in proportion to the products of the distances of their nodes from the edge: that of the
+      !> outermost three, the first at the distance d, is d/3 of the difference from that of the second to fourth, or more.
+      real(wp), parameter :: of_difference = 0.4_wp, least_distance = 0.5_wp
       real(wp) :: near, farther
       logical :: found(2)
 
