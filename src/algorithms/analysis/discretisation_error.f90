@@ -87,9 +87,28 @@ contains
             end if
             if (peak_is_at_corner(simulation, place, values(:, 1))) estimate%bar(place) = logarithmic_bar(values(place, :))
          end do
+         call drop_uncertain_places(values, estimate%bar)
       end if
       simulation%estimate = estimate
    end subroutine estimate_error
+
+   !> Where a quantity is largest is not resolved if it is uncertain by so much that it may be as large elsewhere. `values`: of all
+   !> observables on all meshes; their bars, shape (observable_count).
+   pure subroutine drop_uncertain_places(values, bars)
+      real(wp), intent(in) :: values(:, :)
+      type(error_bar_type), intent(inout) :: bars(:)
+      real(wp), parameter :: uncertain = 0.1_wp
+      character(:), allocatable :: name
+      integer :: place, largest
+
+      do place = 1, observable_count
+         if (observables(place)%error /= error_place .or. .not. bars(place)%known) cycle
+         name = trim(observables(place)%name)
+         largest = observable_place(name(:len(name) - 2))  ! without _x or _y
+         if (.not. bars(largest)%known) cycle
+         if (bars(largest)%error > uncertain*abs(values(largest, 1))) bars(place) = unresolved_bar(values(place, :))
+      end do
+   end subroutine drop_uncertain_places
 
    !> The bar of a slip range that is largest at the outermost node of one patch, on every mesh: in first order the range grows in
    !> proportion to the distance of this node from the contact's edge, d, with a slope from all meshes. The bar is slope*d and what

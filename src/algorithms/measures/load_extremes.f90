@@ -254,6 +254,8 @@ contains
       subroutine add_body(body, side)
          type(body_type), intent(in) :: body
          integer, intent(in) :: side
+         !> Part of the shear that a tension between the samples may have, so that states with and without it differ.
+         real(wp), parameter :: between = 0.1_wp
          real(wp) :: bulk, hoop
 
          estimates([candidate_tension(side), candidate_von_mises(side)]) = -1.0_wp
@@ -263,7 +265,8 @@ contains
          hoop = 0.0_wp
          if (body%deforms_as_circle()) hoop = state%fields%force(motion_approach)/(pi*body%radius)
          associate (stress => bulk + merge(2.0_wp, -2.0_wp, side == 1)*samples%integral - samples%pressure)
-            estimates(candidate_tension(side)) = max(bulk, 0.0_wp, maxval(stress)) + hoop
+            estimates(candidate_tension(side)) = hoop + max(max(bulk, 0.0_wp) + between*maxval(abs(state%fields%shear)), &
+                                                            maxval(stress))
             if (body%yield_strength > 0.0_wp) &
                estimates(candidate_von_mises(side)) = largest_von_mises(model, state, patches, samples, stress, body, side, bulk)
          end associate
