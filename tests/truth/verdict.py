@@ -162,12 +162,11 @@ def judge(problem: Problem, base: mfv.Result, truth: Truth) -> dict[str, Verdict
                     scales.where_it_vanishes(name),
                     size,
                     right,
-                    # Of cycles all have the relative bar of the last one, at least.
-                    bar * max(1.0, abs(value / last)) if group == "cycles" and abs(last) > 0.0 else bar,
+                    _bar_of_row(base, path, row, value, last, bar),
                     flagged,
                     name,
                 )
-                for value, one, two in zip(values, *there)
+                for row, (value, one, two) in enumerate(zip(values, *there))
             ),
             key=lambda verdict: (WORDS.index(verdict.word), verdict.error),
             default=Verdict("right", 0.0, bar, 0.0, math.nan, math.nan),
@@ -253,6 +252,15 @@ def bar_of(base: mfv.Result, path: str, value: float) -> float:
         if not (math.isnan(error) and factor in PRESCRIBED):
             relative += error / of if of > 0.0 else math.inf if error > 0.0 else 0.0
     return relative * abs(value) if math.isfinite(relative) else relative
+
+
+def _bar_of_row(base: mfv.Result, path: str, row: int, value: float, last: float, bar: float) -> float:
+    """Cycles have the relative bar of the last one, at least; the dissipation of the first one has its own. `bar`: of the last one."""
+    if not path.startswith("cycles/"):
+        return bar
+    if path == "cycles/dissipation" and row == 0:
+        return max(bar, _error_of(base, "first_cycle_dissipation"))
+    return bar * max(1.0, abs(value / last)) if abs(last) > 0.0 else bar
 
 
 def _error_of(base: mfv.Result, observable: str) -> float:
