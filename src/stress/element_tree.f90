@@ -5,12 +5,13 @@
 !>
 !>     integral of sigma/(s - z) ds = - sum over k >= 0 of M_k/(z - c)^(k+1),  M_k = integral of sigma (s - c)^k ds.
 !>
-!> Groups are the nodes of a binary tree. Moments of its leaves are found by quadrature, the others from those of their halves.
+!> Groups are the nodes of a binary tree. Moments of its leaves are found by quadrature or, along a straight surface, in closed form,
+!> the others from those of their halves.
 module mfv_element_tree
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: element_tree_type, new_element_tree, last_not_above
+   public :: element_tree_type, new_element_tree, new_straight_tree, last_not_above
 
    !> Most elements of a leaf; radii beyond which a group acts through its moments; the highest moment.
    integer, parameter :: leaf_size = 12
@@ -37,13 +38,49 @@ contains
    !> over an element is the sum of f times weight; shapes (points, elements). `ends`: of the elements, shape (2, elements).
    pure type(element_tree_type) function new_element_tree(ends, place, sigma, weight) result(self)
       complex(wp), intent(in) :: ends(:, :), place(:, :), sigma(:, :), weight(:, :)
+      integer :: group
+
+      call divide(self, size(place, 2))
+      do group = size(self%first), 1, -1
+         if (self%halves(group) == 0) then
+            associate (i => self%first(group), j => self%last(group))
+               call add_leaf(self, group, ends(:, i:j), place(:, i:j), sigma(:, i:j), weight(:, i:j))
+            end associate
+         else
+            call join_halves(self, group)
+         end if
+      end do
+   end function new_element_tree
+
+   !> Elements from `from` to `to` along the real axis, with sigma linear from `first` to `last`; shapes (elements).
+   pure type(element_tree_type) function new_straight_tree(from, to, first, last) result(self)
+      real(wp), intent(in) :: from(:), to(:)
+      complex(wp), intent(in) :: first(:), last(:)
+      integer :: group
+
+      call divide(self, size(from))
+      do group = size(self%first), 1, -1
+         if (self%halves(group) == 0) then
+            associate (i => self%first(group), j => self%last(group))
+               call add_straight_leaf(self, group, from(i:j), to(i:j), first(i:j), last(i:j))
+            end associate
+         else
+            call join_halves(self, group)
+         end if
+      end do
+   end function new_straight_tree
+
+   !> Divide some elements into groups, without their moments.
+   pure subroutine divide(self, elements)
+      type(element_tree_type), intent(inout) :: self
+      integer, intent(in) :: elements
       integer :: group, groups, middle
 
-      groups = 2*size(place, 2)
+      groups = 2*elements
       allocate (self%first(groups), self%last(groups), self%halves(groups))
-      groups = min(size(place, 2), 1)
+      groups = min(elements, 1)
       self%first(:groups) = 1
-      self%last(:groups) = size(place, 2)
+      self%last(:groups) = elements
       group = 1
       do while (group <= groups)
          self%halves(group) = 0
@@ -61,16 +98,41 @@ contains
       self%halves = self%halves(:groups)
       allocate (self%middle(groups), self%radius(groups))
       allocate (self%moments(0:most_moments, groups), self%shear_moments(0:most_moments, groups))
-      do group = groups, 1, -1
-         if (self%halves(group) == 0) then
-            associate (i => self%first(group), j => self%last(group))
-               call add_leaf(self, group, ends(:, i:j), place(:, i:j), sigma(:, i:j), weight(:, i:j))
-            end associate
-         else
-            call join_halves(self, group)
-         end if
+   end subroutine divide
+
+   !> Middle, radius and moments of a leaf with these elements, see new_straight_tree. With d_k = b^k - a^k, a and b the ends of an
+   !> element over the radius, d_(k+1) = b d_k + a^k (b - a); sigma = c + s t has the moments c d_(k+1)/(k+1) + s d_(k+2)/(k+2).
+   pure subroutine add_straight_leaf(self, group, from, to, first, last)
+      type(element_tree_type), intent(inout) :: self
+      integer, intent(in) :: group
+      real(wp), intent(in) :: from(:), to(:)
+      complex(wp), intent(in) :: first(:), last(:)
+      real(wp), dimension(size(from)) :: a, b, width, power, difference
+      complex(wp), dimension(size(from)) :: constant, slope
+      integer :: k
+
+      associate (middle => 0.5_wp*(from(1) + to(size(to))))
+         self%middle(group) = middle
+         self%radius(group) = max(maxval(abs(from - middle)), maxval(abs(to - middle)), tiny(1.0_wp))
+         a = (from - middle)/self%radius(group)
+         b = (to - middle)/self%radius(group)
+      end associate
+      width = (to - from)/self%radius(group)
+      slope = 0.0_wp
+      where (width > 0.0_wp) slope = (last - first)/width
+      constant = 0.5_wp*(first + last - slope*(a + b))
+      power = a
+      difference = width
+      do k = 0, most_moments
+         self%moments(k, group) = sum(constant*difference)/(k + 1)
+         difference = b*difference + power*width
+         self%moments(k, group) = self%moments(k, group) + sum(slope*difference)/(k + 2)
+         power = power*a
       end do
-   end function new_element_tree
+      self%moments(:, group) = self%radius(group)*self%moments(:, group)
+      ! Along a straight surface shear moments are the imaginary parts.
+      self%shear_moments(:, group) = aimag(self%moments(:, group))
+   end subroutine add_straight_leaf
 
    !> Middle, radius and moments of a leaf with these elements, see new_element_tree.
    pure subroutine add_leaf(self, group, ends, place, sigma, weight)
@@ -84,15 +146,6 @@ contains
       self%radius(group) = max(maxval(abs(ends - self%middle(group))), tiny(1.0_wp))
       ratio = (place - self%middle(group))/self%radius(group)
       terms = sigma*weight
-      if (.not. any(abs(aimag(ratio)) > 0.0_wp)) then
-         ! Along a straight surface shear moments are the imaginary parts.
-         do k = 0, most_moments
-            self%moments(k, group) = sum(terms)
-            terms = terms*real(ratio, wp)
-         end do
-         self%shear_moments(:, group) = aimag(self%moments(:, group))
-         return
-      end if
       shear = aimag(sigma)*weight
       do k = 0, most_moments
          self%moments(k, group) = sum(terms)

@@ -6,18 +6,15 @@
 !> - z) dt. The integrals over an element are elementary; for elements that are short compared with their distance, series
 !> avoid cancellation; groups of distant elements act together (mfv_element_tree).
 module mfv_interior_half_plane
-   use mfv_element_tree, only: element_tree_type, last_not_above, new_element_tree
+   use mfv_element_tree, only: element_tree_type, last_not_above, new_straight_tree
    use mfv_kinds, only: pi, wp
    use mfv_logarithms, only: log_ratio
-   use mfv_quadrature, only: gauss_points
    implicit none
    private
    public :: half_plane_load_type, new_half_plane_load
 
    !> Terms of the power series, which converge at least as 1/25^k: enough for the kind of real numbers.
    integer, parameter :: most_terms = int(0.25_wp*digits(1.0_wp)) + 2
-   !> Quadrature points of an element for its moments, exact for the highest moment that matters.
-   integer, parameter :: most_points = ceiling(0.25_wp*digits(1.0_wp))
 
    !> A half-plane under tractions p + i tau that are linear on elements.
    type :: half_plane_load_type
@@ -39,20 +36,12 @@ contains
    pure type(half_plane_load_type) function new_half_plane_load(from, to, first, last) result(self)
       real(wp), intent(in) :: from(:), to(:)
       complex(wp), intent(in) :: first(:), last(:)
-      real(wp) :: point(most_points), weight(most_points)
-      integer :: j
 
       self%from = from
       self%to = to
       self%first = first
       self%last = last
-      call gauss_points(0.0_wp, 1.0_wp, point, weight)
-      self%tree = new_element_tree(cmplx(transpose(reshape([from, to], [size(from), 2])), 0.0_wp, wp), &
-                                   cmplx(reshape([(from(j) + (to(j) - from(j))*point, j=1, size(from))], &
-                                                 [most_points, size(from)]), 0.0_wp, wp), &
-                                   reshape([(first(j) + (last(j) - first(j))*point, j=1, size(from))], [most_points, size(from)]), &
-                                   cmplx(reshape([((to(j) - from(j))*weight, j=1, size(from))], &
-                                                 [most_points, size(from)]), 0.0_wp, wp))
+      self%tree = new_straight_tree(from, to, first, last)
    end function new_half_plane_load
 
    !> Stresses (sigma_xx, sigma_yy, sigma_xy), force/length^2, at the depth `depth` >= 0 below the surface point `x`, lengths. At

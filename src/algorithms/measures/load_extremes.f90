@@ -282,7 +282,8 @@ contains
       integer, parameter :: most_between = 12
       logical :: is_sample(model%nodes())
       integer, allocatable :: nodes(:)
-      integer :: first, last, i, j
+      real(wp), allocatable :: ends(:), steps(:)
+      integer :: first(size(patches) + 1), i, j
 
       is_sample = .false.
       do i = 1, size(patches)
@@ -295,51 +296,63 @@ contains
          end associate
       end do
       nodes = pack([(i, i=1, size(is_sample))], is_sample)
-      first = minval(patches%first)
-      last = maxval(patches%last)
+      call find_steps()
       samples%arc = [model%arc(nodes), patches%left, patches%right]
-      samples%integral = [(integral_over(first, last, model%arc(nodes(i))), i=1, size(nodes)), &
-                          (integral_at_edge(-1, patches(i)), i=1, size(patches)), &
-                          (integral_at_edge(1, patches(i)), i=1, size(patches))]/pi
+      samples%integral = [(integral_over(1, size(ends), model%arc(nodes(i))), i=1, size(nodes)), &
+                          (integral_at_edge(-1, i), i=1, size(patches)), (integral_at_edge(1, i), i=1, size(patches))]/pi
       samples%pressure = [state%fields%pressure(nodes), (0.0_wp, i=1, 2*size(patches))]
       samples%shear = [state%fields%shear(nodes), (0.0_wp, i=1, 2*size(patches))]
 
    contains
 
-      !> Integral of tau/(t - x) dt over the intervals of some nodes, with constant tau in each.
+      !> Ends of the intervals in contact, and the steps down of tau there: those of a patch begin with the `first` one.
+      subroutine find_steps()
+         integer :: node
+
+         first = 1
+         allocate (ends(sum(patches%last - patches%first + 2)), steps(sum(patches%last - patches%first + 2)))
+         do i = 1, size(patches)
+            associate (from => patches(i)%first, to => patches(i)%last, tau => state%fields%shear)
+               first(i + 1) = first(i) + to - from + 2
+               ends(first(i):first(i + 1) - 1) = [model%arc(from) - 0.5_wp*model%width(from), &
+                                                  (model%arc(node) + 0.5_wp*model%width(node), node=from, to)]
+               steps(first(i):first(i + 1) - 1) = [-tau(from), (tau(node) - tau(node + 1), node=from, to - 1), tau(to)]
+            end associate
+         end do
+      end subroutine find_steps
+
+      !> Integral of tau/(t - x) dt over the intervals of some ends, with constant tau in each.
       pure real(wp) function integral_over(from, to, x)
          integer, intent(in) :: from, to
          real(wp), intent(in) :: x
-         real(wp), parameter :: least = tiny(1.0_wp)
 
-         associate (place => model%arc(from:to) - x, half => 0.5_wp*model%width(from:to))
-            integral_over = sum(state%fields%shear(from:to)*(log(max(abs(place + half), least)) - &
-                                                             log(max(abs(place - half), least))))
-         end associate
+         integral_over = sum(steps(from:to)*log(max(abs(ends(from:to) - x), tiny(1.0_wp))))
       end function integral_over
 
-      !> The same over all nodes at the left (-1) or right edge of a patch. In the patch t = c - a cos(angle): the integral over t
+      !> The same over all patches at the left (-1) or right edge of one. In that patch t = c - a cos(angle): the integral over t
       !> of the root is a^2/2 (angle - sin cos), that of the root over t - x is a (sin - side angle).
-      pure real(wp) function integral_at_edge(side, patch) result(integral)
-         integer, intent(in) :: side
-         type(patch_type), intent(in) :: patch
-         real(wp) :: half, edge, angle(patch%first:patch%last + 1), root(patch%first:patch%last)
+      pure real(wp) function integral_at_edge(side, number) result(integral)
+         integer, intent(in) :: side, number
+         real(wp) :: half, edge, angle(patches(number)%first:patches(number)%last + 1)
+         real(wp) :: root(patches(number)%first:patches(number)%last)
 
-         half = 0.5_wp*patch%length()
-         edge = merge(patch%right, patch%left, side > 0)
-         integral = integral_over(first, patch%first - 1, edge) + integral_over(patch%last + 1, last, edge)
-         if (.not. half > 0.0_wp) return
-         associate (from => patch%first, to => patch%last)
-            angle(from) = 0.0_wp
-            angle(from + 1:to) = acos(max(-1.0_wp, min(1.0_wp, (patch%left + half - model%arc(from + 1:to) &
-                                                                + 0.5_wp*model%width(from + 1:to))/half)))
-            angle(to + 1) = pi
-            associate (a => angle(from:to), b => angle(from + 1:to + 1), force => state%fields%shear(from:to)*model%width(from:to))
-               root = 0.5_wp*half*(b - a - sin(b)*cos(b) + sin(a)*cos(a))
-               where (root > 0.0_wp) root = force/root*(sin(b) - sin(a) - side*(b - a))
+         associate (patch => patches(number))
+            half = 0.5_wp*patch%length()
+            edge = merge(patch%right, patch%left, side > 0)
+            integral = integral_over(1, first(number) - 1, edge) + integral_over(first(number + 1), size(ends), edge)
+            if (.not. half > 0.0_wp) return
+            associate (from => patch%first, to => patch%last)
+               angle(from) = 0.0_wp
+               angle(from + 1:to) = acos(max(-1.0_wp, min(1.0_wp, (patch%left + half - model%arc(from + 1:to) &
+                                                                   + 0.5_wp*model%width(from + 1:to))/half)))
+               angle(to + 1) = pi
+             associate (a => angle(from:to), b => angle(from + 1:to + 1), force => state%fields%shear(from:to)*model%width(from:to))
+                  root = 0.5_wp*half*(b - a - sin(b)*cos(b) + sin(a)*cos(a))
+                  where (root > 0.0_wp) root = force/root*(sin(b) - sin(a) - side*(b - a))
+               end associate
             end associate
+            integral = integral + sum(root)
          end associate
-         integral = integral + sum(root)
       end function integral_at_edge
    end subroutine sample_surface
 
