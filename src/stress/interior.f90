@@ -6,9 +6,10 @@ module mfv_interior
    use mfv_body, only: body_type
    use mfv_interior_circle, only: circle_load_type, longest_element, new_circle_load
    use mfv_interior_half_plane, only: half_plane_load_type, new_half_plane_load
-   use mfv_kinds, only: certified, wp
+   use mfv_kinds, only: wp
    use mfv_material, only: plane_strain
    use mfv_surface_tractions, only: find_traction_elements, traction_elements_type, zone_list_type
+   use mfv_tolerances, only: certified
    implicit none
    private
    public :: interior_type, new_interior, has_interior, von_mises_stress, tresca_stress, principal_stresses, polar_stress

@@ -2,9 +2,10 @@
 module mfv_stress_search
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
    use mfv_interior, only: interior_type, von_mises_stress
-   use mfv_kinds, only: certified, pi, wp
+   use mfv_kinds, only: pi, wp
    use mfv_minimum, only: minimum_near, objective_type
    use mfv_surface_tractions, only: merged
+   use mfv_tolerances, only: certified
    implicit none
    private
    public :: largest_type, largest_von_mises, largest_tension

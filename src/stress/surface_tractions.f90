@@ -10,9 +10,10 @@
 module mfv_surface_tractions
    use mfv_edge_solutions, only: discrete_over_exact, graded_solution_type, least_power, most_power, new_graded_solution, &
                                  find_solved_distance
-   use mfv_kinds, only: certified, pi, wp
+   use mfv_kinds, only: pi, wp
    use mfv_lapack, only: dgesv
    use mfv_quadrature, only: gauss_points
+   use mfv_tolerances, only: certified, visible
    implicit none
    private
    public :: zone_list_type, traction_elements_type, find_traction_elements, merged, root_shift
@@ -94,7 +95,6 @@ contains
       real(wp), allocatable :: edges(:, :)
       logical, allocatable :: sharp(:, :)
       integer, allocatable :: owner(:)
-      real(wp), parameter :: near = 1.0e-6_wp
       integer, parameter :: fewest_in_zone = 60
       integer, allocatable :: nodes(:)
       logical, allocatable :: done(:)
@@ -102,7 +102,7 @@ contains
       integer :: fewest, i, j, k, number
 
       patch%turn = zones%turn
-      patch%graded = maxval(width) - minval(width) > near*maxval(width)
+      patch%graded = maxval(width) - minval(width) > visible*maxval(width)
       patch%nothing = certified*max(maxval(abs(pressure)), maxval(abs(shear)))
       call assign_nodes(arc, width, max(abs(pressure), abs(shear)) > patch%nothing, zones, edges, sharp, owner)
       fewest = max(zones%fewest_elements/max(size(edges, 2), 1), min(zones%fewest_elements, fewest_in_zone))

@@ -23,6 +23,7 @@ module mfv_discretisation_error
    use mfv_slip_zones, only: contact_interval, largest_resolved_error, slip_record_type
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
+   use mfv_tolerances, only: certified, significant
    use mfv_zone_edges, only: find_patches, largest_shear, patch_type, slipping_run, zones_of
    implicit none
    private
@@ -186,7 +187,7 @@ contains
       integer, intent(in) :: place
       real(wp), intent(in) :: values(:), allowances(:)
       !> Relative difference of a prescribed load on two meshes.
-      real(wp), parameter :: round_off = 1.0e-10_wp
+      real(wp), parameter :: round_off = certified
 
       select case (observables(place)%error)
       case (error_stick)
@@ -256,14 +257,13 @@ contains
       type(scene_type), intent(in) :: scene
       type(body_type), intent(in) :: body
       integer, intent(in) :: nodes
-      real(wp), parameter :: whole = 1.0e-9_wp
       real(wp) :: intervals
 
       fits = .true.
       if (.not. body%deforms_as_circle() .or. body%elasticity%kernel /= kernel_fourier) return
       if (.not. scene%mesh%half_width > 0.0_wp) return
       intervals = pi*body%radius*nodes/scene%mesh%half_width
-      fits = abs(intervals - anint(intervals)) <= whole*intervals
+      fits = abs(intervals - anint(intervals)) <= significant*intervals
    end function fits
 
    !> Solve the scene on the coarser meshes. `values`, `allowances`: every quantity on every mesh, shape (observable_count,

@@ -11,6 +11,7 @@ module mfv_observables
    use mfv_simulation, only: mark_loading, simulation_type
    use mfv_state_interior, only: find_largest_tension
    use mfv_stress_search, only: largest_type
+   use mfv_tolerances, only: significant
    use mfv_zone_edges, only: outermost_edges, find_patches, find_zone_edges, largest_shear, patch_type, zone_edges_type
    implicit none
    private
@@ -324,7 +325,7 @@ contains
       type(cycle_type), intent(in) :: cycle
       real(wp), intent(inout) :: values(:)
       !> A normal force that is a smaller fraction of the largest one counts as zero.
-      real(wp), parameter :: round_off = 1.0e-9_wp
+      real(wp), parameter :: round_off = significant
       real(wp) :: sliding_limit, force
 
       associate (scene => simulation%contact%model%scene)

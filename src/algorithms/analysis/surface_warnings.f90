@@ -9,6 +9,7 @@ module mfv_surface_warnings
    use mfv_profile_sampling, only: negligible_pressure, pressure_of_wave
    use mfv_simulation, only: simulation_type
    use mfv_strings, only: add_text, string_type, to_text
+   use mfv_tolerances, only: significant
    implicit none
    private
    public :: warn_of_surface
@@ -191,13 +192,12 @@ contains
    pure integer function corners_under(body, x) result(corners)
       type(body_type), intent(in) :: body
       real(wp), intent(in) :: x(:)
-      real(wp), parameter :: tolerance = 1.0e-9_wp
       real(wp), allocatable :: slope(:)
       integer :: i, n
 
       n = size(body%position)
       slope = (body%height(2:) - body%height(:n - 1))/(body%position(2:) - body%position(:n - 1))
-      corners = count([(abs(slope(i) - slope(i - 1)) > tolerance*maxval(abs(slope)) .and. &
+      corners = count([(abs(slope(i) - slope(i - 1)) > significant*maxval(abs(slope)) .and. &
                         body%position(i) > minval(x) .and. body%position(i) < maxval(x), i=2, n - 1)])
    end function corners_under
 

@@ -14,6 +14,7 @@ module mfv_tangent
    use mfv_node_status, only: in_contact, node_frictionless
    use mfv_observer, only: observer_type
    use mfv_status, only: MFV_BAD_ARGUMENT, MFV_INTERRUPTED
+   use mfv_tolerances, only: significant
    implicit none
    private
    public :: find_tangent
@@ -71,7 +72,7 @@ contains
       real(wp), intent(in) :: direction(:)
       type(error_type), allocatable, intent(out) :: error
       !> Length of the trial motion over that of the mesh: small, but well above rounding errors.
-      real(wp), parameter :: little = 1.0e-9_wp
+      real(wp), parameter :: little = significant
       type(segment_type) :: segment
       type(settled_type) :: observer
       integer :: i

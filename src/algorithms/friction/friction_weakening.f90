@@ -13,6 +13,7 @@ module mfv_friction_weakening
    use mfv_friction_law
    use mfv_kinds, only: wp
    use mfv_node_status
+   use mfv_tolerances, only: certified, significant
    implicit none
    private
    public :: weakening_law_type, weakening_law
@@ -137,7 +138,6 @@ contains
       integer, intent(in) :: status
       type(friction_point_type), intent(in) :: here, there
       type(friction_event_type), intent(out) :: events(most_events)
-      real(wp), parameter :: round_off = 1.0e-10_wp
       real(wp) :: fall, lawful, by_slip, slack
 
       if (.not. slips(status)) return
@@ -150,7 +150,7 @@ contains
       by_slip = 0.0_wp
       if (lawful > 0.0_wp) by_slip = -fall*here%pressure
       slack = here%memory(over) - lawful*here%pressure
-      if (slack <= round_off*here%static*here%pressure) slack = 0.0_wp
+      if (slack <= certified*here%static*here%pressure) slack = 0.0_wp
       events(3) = friction_event_type(event_caught, slack=slack, &
                                       rate=-self%release_rate(here%memory), by_pressure=-lawful, by_motion=-by_slip)
    end subroutine find_events
@@ -181,11 +181,10 @@ contains
       class(weakening_law_type), intent(in) :: self
       integer, intent(in) :: status
       type(friction_point_type), intent(in) :: point
-      real(wp), parameter :: at_limit = 1.0e-9_wp
 
       can_become_unstable = in_contact(status) .and. point%pressure > 0.0_wp .and. .not. point%memory(over) > 0.0_wp .and. &
                             point%kinetic < point%static .and. &
-                            (abs(point%shear) >= point%static*point%pressure*(1.0_wp - at_limit) .or. &
+                            (abs(point%shear) >= point%static*point%pressure*(1.0_wp - significant) .or. &
                              (slips(status) .and. point%memory(slipped) < self%distance))
    end function can_become_unstable
 

@@ -13,6 +13,7 @@ module mfv_certificate
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift
    use mfv_node_status
    use mfv_scene, only: algorithm_mfv, integration_explicit
+   use mfv_tolerances, only: visible
    implicit none
    private
    public :: certificate_type, residual_count, residual_names, residual_descriptions
@@ -45,7 +46,7 @@ module mfv_certificate
    !> Gaps, and work through differences of them, have the round-off of lengths that exist without load: undeformed gaps and the
    !> approach. Two nodes beside a tip can have gaps that differ by round-off; the first displacements are not larger than that.
    !> Scales are at least this part of those lengths, or of a force times them.
-   real(wp), parameter :: least_scale = 1.0e-6_wp
+   real(wp), parameter :: least_scale = visible
 
    type :: certificate_type
       !> Largest relative residuals over all increments, by kind.

@@ -3,10 +3,11 @@ module mfv_cycle
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
-   use mfv_kinds, only: certified, pi, wp
+   use mfv_kinds, only: pi, wp
    use mfv_load_extremes, only: load_extremes_type
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift
    use mfv_slip_zones, only: slip_record_type
+   use mfv_tolerances, only: certified, significant
    use mfv_zone_edges, only: find_zone_edges, zone_edges_type
    implicit none
    private
@@ -118,9 +119,8 @@ contains
    elemental logical function is_farther(self, point)
       class(cycle_type), intent(in) :: self
       type(turning_point_type), intent(in) :: point
-      real(wp), parameter :: round_off = 1.0e-9_wp
 
-      is_farther = point%distance(self%return) > (1.0_wp + round_off)*self%reversal%distance(self%return)
+      is_farther = point%distance(self%return) > (1.0_wp + significant)*self%reversal%distance(self%return)
    end function is_farther
 
    !> Work of the force of a motion over the cycle, per unit thickness: force. It is the area of the loop of force and motion; an
@@ -151,7 +151,7 @@ contains
    elemental logical function walks(self)
       class(cycle_type), intent(in) :: self
       !> Least drift over the range of the shift; over the approach, which is elastic, and the change of the tractions; round-off.
-      real(wp), parameter :: least = 1.0e-3_wp, over_change = 3.0_wp, round_off = 1.0e-9_wp
+      real(wp), parameter :: least = 1.0e-3_wp, over_change = 3.0_wp, round_off = significant
       real(wp) :: lowest, highest, elastic
 
       lowest = min(self%lowest_motion(motion_shift), self%start%motion(motion_shift))
@@ -192,27 +192,25 @@ contains
    !> Whether tangential force and shift both change by more than a rounding error.
    elemental logical function is_sheared(self)
       class(cycle_type), intent(in) :: self
-      real(wp), parameter :: tolerance = 1.0e-10_wp
 
-      is_sheared = self%shift_amplitude() > tolerance*max(abs(self%lowest_motion(motion_shift)), &
+      is_sheared = self%shift_amplitude() > certified*max(abs(self%lowest_motion(motion_shift)), &
                                                           abs(self%highest_motion(motion_shift))) .and. &
-                   self%force_amplitude() > tolerance*self%highest_force(motion_approach) .and. &
+                   self%force_amplitude() > certified*self%highest_force(motion_approach) .and. &
                    self%force_amplitude() < self%return%largest_stiffness*self%shift_amplitude()
    end function is_sheared
 
    !> Whether only the tangential force does work: neither the normal force nor another motion such as the rotation changes.
    elemental logical function only_sheared(self)
       class(cycle_type), intent(in) :: self
-      real(wp), parameter :: tolerance = 1.0e-9_wp
       real(wp) :: force(3), motion(3)
       integer :: i
 
       force = [self%start%force(motion_approach), self%lowest_force(motion_approach), self%highest_force(motion_approach)]
-      only_sheared = self%is_sheared() .and. maxval(force) - minval(force) <= tolerance*maxval(force)
+      only_sheared = self%is_sheared() .and. maxval(force) - minval(force) <= significant*maxval(force)
       do i = 1, motion_count
          if (.not. motions(i)%optional) cycle
          motion = [self%start%motion(i), self%lowest_motion(i), self%highest_motion(i)]
-         only_sheared = only_sheared .and. maxval(motion) - minval(motion) <= tolerance*maxval(abs(motion))
+         only_sheared = only_sheared .and. maxval(motion) - minval(motion) <= significant*maxval(abs(motion))
       end do
    end function only_sheared
 
@@ -232,7 +230,7 @@ contains
       !> Part of the area by which an open loop may be uncertain.
       real(wp), parameter :: negligible = 0.01_wp
       !> Loss factor, and part of the amplitudes, that is a rounding error.
-      real(wp), parameter :: round_off = 1.0e-9_wp
+      real(wp), parameter :: round_off = significant
       real(wp) :: open_work
 
       loss_factor = ieee_value(1.0_wp, ieee_quiet_nan)

@@ -15,6 +15,7 @@ module mfv_load_extremes
    use mfv_material, only: plane_strain
    use mfv_motions, only: bulk_motions, motion_approach, motion_count
    use mfv_node_status, only: in_contact
+   use mfv_tolerances, only: significant, visible
    use mfv_zone_edges, only: find_patches, largest_shear, outermost_edges, patch_type, zone_edges_type
    implicit none
    private
@@ -30,9 +31,9 @@ module mfv_load_extremes
    !> Most rows of each, those with the largest estimates, in which they are searched for; and in all.
    integer, parameter :: rows_of(candidate_count) = [5, 5, 3, 3], most_rows = 5
    !> Estimates that differ by less, relative to their values, are of the same state.
-   real(wp), parameter :: same = 1.0e-6_wp
+   real(wp), parameter :: same = visible
    !> Extremes that differ by less, relative to their values, are equal: the first row counts.
-   real(wp), parameter :: round_off = 1.0e-9_wp
+   real(wp), parameter :: round_off = significant
 
    !> A value, its place (x and y, lengths) and its row, see load_extremes_type; 0: none yet.
    type :: extreme_type

@@ -3,6 +3,7 @@
 module mfv_rolling
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_kinds, only: wp
+   use mfv_tolerances, only: significant, visible
    implicit none
    private
    public :: rolling_type
@@ -35,7 +36,7 @@ contains
       real(wp), intent(in) :: interval, rolled(2), slid(2)
       logical, intent(in) :: forces_stay
       !> An end that is missed by this fraction of an interval counts as passed.
-      real(wp), parameter :: round_off = 1.0e-9_wp
+      real(wp), parameter :: round_off = significant
       real(wp) :: ends, last, fraction
       integer :: direction, i
 
@@ -80,9 +81,9 @@ contains
    pure logical function is_steady(self, half_width)
       class(rolling_type), intent(in) :: self
       real(wp), intent(in) :: half_width
-      real(wp), parameter :: lengths = 2.0_wp, tolerance = 1.0e-6_wp
+      real(wp), parameter :: lengths = 2.0_wp
 
-      is_steady = self%distance*(1.0_wp + tolerance) >= lengths*2.0_wp*half_width .and. half_width > 0.0_wp
+      is_steady = self%distance*(1.0_wp + visible) >= lengths*2.0_wp*half_width .and. half_width > 0.0_wp
    end function is_steady
 
    !> Whether it rolls to the right.

@@ -16,6 +16,7 @@ module mfv_slip_zones
    use mfv_node_status, only: holds, in_contact, motion_sign, node_frictionless
    use mfv_reference_spence, only: spence_stick_ratio
    use mfv_strings, only: to_text
+   use mfv_tolerances, only: significant
    use mfv_zone_edges, only: ends_with_body, find_zone_edges, zone_edges_type, zone_type, zones_of
    implicit none
    private
@@ -271,7 +272,7 @@ contains
       real(wp), intent(out) :: width, missing
       integer, parameter :: fewest = 6
       !> Relative to the friction limit, smaller changes of the shear traction are within tolerance.
-      real(wp), parameter :: least_tolerance = 1.0e-9_wp, margin = 100.0_wp
+      real(wp), parameter :: least_tolerance = significant, margin = 100.0_wp
       real(wp) :: change(size(state%status)), one_width, one_work
       integer :: added, first, last, side
 
@@ -323,13 +324,12 @@ contains
       type(contact_model_type), intent(in) :: model
       type(segment_start_type), intent(in) :: start
       type(contact_state_type), intent(in) :: state
-      real(wp), parameter :: tolerance = 1.0e-9_wp
       real(wp) :: pressed, sheared
 
       pressed = state%fields%force(motion_approach) - start%force(motion_approach)
       sheared = abs(state%fields%force(motion_shift) - start%force(motion_shift))
-      presses_within_friction = pressed > tolerance*state%fields%force(motion_approach) .and. &
-                                sheared <= model%scene%friction%static%largest()*pressed*(1.0_wp + tolerance)
+      presses_within_friction = pressed > significant*state%fields%force(motion_approach) .and. &
+                                sheared <= model%scene%friction%static%largest()*pressed*(1.0_wp + significant)
    end function presses_within_friction
 
    !> Width (length) and dissipation (force) of the slip zone that the `change` of the shear traction, force/length^2, causes

@@ -5,9 +5,10 @@ module mfv_state_interior
    use mfv_contact_state, only: contact_state_type
    use mfv_corners, only: corner_type, corners_of
    use mfv_interior, only: has_interior, interior_type
-   use mfv_kinds, only: certified, wp
+   use mfv_kinds, only: wp
    use mfv_motions, only: bulk_motions
    use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
+   use mfv_tolerances, only: certified
    use mfv_zone_edges, only: find_patches, patch_type
    implicit none
    private

@@ -16,10 +16,11 @@ module mfv_zone_edges
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
    use mfv_edge_solutions, only: graded_solution_type, least_power, most_power, new_graded_solution, find_solved_distance
-   use mfv_kinds, only: certified, pi, wp
+   use mfv_kinds, only: pi, wp
    use mfv_motions, only: motion_shift
    use mfv_node_status, only: holds, in_contact, slip_sign, slips
    use mfv_surface_tractions, only: root_shift
+   use mfv_tolerances, only: certified, significant, visible
    implicit none
    private
    public :: zone_type, patch_type, zone_edges_type, find_patches, find_zone_edges, outermost_edges, largest_shear, &
@@ -427,9 +428,8 @@ contains
       !> Whether a sticking node is at its friction limit within tolerance.
       pure logical function at_its_limit(node)
          integer, intent(in) :: node
-         real(wp), parameter :: tolerance = 1.0e-9_wp
 
-         at_its_limit = lack(node) <= tolerance*model%static_friction(node)*state%fields%pressure(node)
+         at_its_limit = lack(node) <= significant*model%static_friction(node)*state%fields%pressure(node)
       end function at_its_limit
    end subroutine find_stick_edge
 
@@ -778,12 +778,11 @@ contains
    pure logical function ends_with_body(model, node, side)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: node, side
-      real(wp), parameter :: near = 1.0e-6_wp
       real(wp) :: half
 
       half = 0.5_wp*model%width(node)
-      ends_with_body = model%scene%touchable(model%arc(node) + side*half*(1.0_wp - near)) .and. &
-                       .not. model%scene%touchable(model%arc(node) + side*half*(1.0_wp + near))
+      ends_with_body = model%scene%touchable(model%arc(node) + side*half*(1.0_wp - visible)) .and. &
+                       .not. model%scene%touchable(model%arc(node) + side*half*(1.0_wp + visible))
    end function ends_with_body
 
 end module mfv_zone_edges

@@ -11,6 +11,7 @@ module mfv_scene
    use mfv_motions, only: motions, motion_approach, motion_count, control_keep, control_force, control_displacement
    use mfv_profile_sampling, only: sufficient_interval
    use mfv_surface_tractions, only: zone_list_type
+   use mfv_tolerances, only: visible
    use mfv_wear, only: wear_type
    implicit none
    private
@@ -452,11 +453,10 @@ contains
       class(scene_type), intent(in) :: self
       real(wp), intent(in) :: arc(:), width(:), edge
       integer, intent(in) :: side
-      real(wp), parameter :: near = 1.0e-6_wp
       integer :: node
 
       node = minloc(abs(arc + side*0.5_wp*width - edge), dim=1)
-      associate (tiny_step => side*near*width(node))
+      associate (tiny_step => side*visible*width(node))
          ends_with_body = self%touchable(edge - tiny_step) .and. .not. self%touchable(edge + tiny_step)
          if (abs(arc(node) + side*0.5_wp*width(node) - edge) <= abs(tiny_step)) &
             ends_with_body = .not. self%touchable(arc(node) + side*width(node))

@@ -9,6 +9,7 @@
 !>     call gmres%add_solution(x)
 module mfv_gmres
    use mfv_kinds, only: wp
+   use mfv_tolerances, only: rounding
    implicit none
    private
    public :: gmres_type
@@ -80,7 +81,6 @@ contains
    subroutine extend(self, image)
       class(gmres_type), intent(inout) :: self
       real(wp), intent(inout) :: image(:)
-      real(wp), parameter :: nothing = 1.0e-14_wp
       real(wp) :: column(most_steps + 1), length, before, turned
       integer :: i, k
 
@@ -92,7 +92,7 @@ contains
             image = image - column(i)*self%basis(:n, i)
          end do
          length = norm2(image)
-         self%complete = .not. length > nothing*before
+         self%complete = .not. length > rounding*before
          if (.not. self%complete) self%basis(:n, k + 1) = image/length
       end associate
       do i = 1, k - 1
@@ -102,7 +102,7 @@ contains
       end do
       turned = hypot(column(k), length)
       ! The direction yields no new vector: the matrix is singular.
-      if (.not. turned > nothing*before) return
+      if (.not. turned > rounding*before) return
       self%cosine(k) = column(k)/turned
       self%sine(k) = length/turned
       column(k) = turned

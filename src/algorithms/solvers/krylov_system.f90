@@ -27,6 +27,7 @@ module mfv_krylov_system
    use mfv_motions, only: motion_count, motion_shift, motion_wear, control_force, arm_unit
    use mfv_node_status
    use mfv_reduced_system, only: reduced_system_type
+   use mfv_tolerances, only: rounding, significant
    implicit none
    private
    public :: krylov_system_type
@@ -209,7 +210,6 @@ contains
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(constraints_type), intent(in) :: constraints
-      real(wp), parameter :: no_stiffness = 1.0e-14_wp
       logical, dimension(size(constraints%status)) :: is_held, follows
       real(wp), dimension(size(constraints%status)) :: stiffness
       logical :: free(motion_count)
@@ -219,7 +219,7 @@ contains
       follows = slips(constraints%status) .or. creeps(constraints%status)
       stiffness = 0.0_wp
       where (follows) stiffness = constraints%row%stiffness*(self%length/self%stress)
-      where (abs(stiffness) <= no_stiffness) stiffness = 0.0_wp
+      where (abs(stiffness) <= rounding) stiffness = 0.0_wp
       is_held = constraints%status == node_stick .or. abs(stiffness) > 0.0_wp
       self%contact = pack([(i, i=1, n)], in_contact(constraints%status))
       self%held = pack([(i, i=1, n)], is_held)
@@ -326,7 +326,7 @@ contains
       real(wp), intent(in) :: tolerance
       real(wp), intent(inout) :: unknowns(:)
       logical, intent(out) :: fails
-      real(wp), parameter :: worth_keeping = 0.5_wp, progress = 0.5_wp, near_enough = 2.0_wp, good_enough = 1.0e-9_wp, &
+      real(wp), parameter :: worth_keeping = 0.5_wp, progress = 0.5_wp, near_enough = 2.0_wp, &
                              drift = 1.0e-10_wp
       real(wp) :: rows(size(unknowns)), reached, before, scale, target
       integer :: pass
@@ -365,7 +365,7 @@ contains
          before = reached
          call improve(self, model, rows, target, unknowns, done)
       end do
-      fails = reached > max(good_enough*scale, 1.0e2_wp*target)
+      fails = reached > max(significant*scale, 1.0e2_wp*target)
    end subroutine iterate
 
    !> Error of the unknowns due to round-off of the displacements (2-norm).

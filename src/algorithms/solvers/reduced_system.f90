@@ -25,6 +25,7 @@ module mfv_reduced_system
    use mfv_kinds, only: wp
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, control_force, arm_unit
    use mfv_node_status, only: in_contact, node_frictionless, node_stick
+   use mfv_tolerances, only: certified, rounding
    implicit none
    private
    public :: reduced_system_type
@@ -518,7 +519,6 @@ contains
       type(contact_fields_type), intent(inout) :: fields
       logical, intent(out) :: singular
       integer, parameter :: most_passes = 6
-      real(wp), parameter :: fair = 1.0e-10_wp
       real(wp) :: residual, fine
       integer :: i, pass
       type(scales_type) :: scales, first
@@ -540,12 +540,12 @@ contains
          call find_residual(self, model, constraints, fields, scales, residual)
          if (at_rest) residual = huge(1.0_wp)
          if (residual <= fine) exit
-         if (pass > 3 .and. residual <= fair) exit
+         if (pass > 3 .and. residual <= certified) exit
          if (pass > 1 .or. .not. rates) self%refinements = self%refinements + 1
          call correct(self, model, constraints, scales, fields, singular)
          if (singular) return
       end do
-      singular = .not. residual <= fair
+      singular = .not. residual <= certified
       do i = 1, motion_count
          if (.not. model%moves(i)) cycle
          fields%force(i) = model%resultant(i, fields%pressure, fields%shear)
@@ -579,7 +579,6 @@ contains
       class(reduced_system_type), intent(in) :: self
       type(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(inout) :: fields
-      real(wp), parameter :: nothing = 1.0e-14_wp
       real(wp) :: largest, scale
 
       scale = max(maxval(abs(fields%pressure)), maxval(abs(fields%shear)))
@@ -588,7 +587,7 @@ contains
          where (.not. has_pressure) fields%pressure = 0.0_wp
          where (.not. has_shear) fields%shear = 0.0_wp
       end associate
-      if (largest > nothing*scale) call model%displace(fields)
+      if (largest > rounding*scale) call model%displace(fields)
    end subroutine clear_open_nodes
 
    !> Residuals of all rows and constraints, in their units, as right sides for a correction; and the largest of them, relative to

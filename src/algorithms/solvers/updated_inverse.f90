@@ -12,6 +12,7 @@
 module mfv_updated_inverse
    use mfv_kinds, only: wp
    use mfv_lapack, only: dgemm, dgemv, dgetrf, dgetri
+   use mfv_tolerances, only: rounding
    implicit none
    private
    public :: updated_inverse_type
@@ -90,7 +91,6 @@ contains
    subroutine add_prepared(self, singular)
       class(updated_inverse_type), intent(inout) :: self
       logical, intent(out) :: singular
-      real(wp), parameter :: nothing = 1.0e-14_wp
       real(wp) :: pivot
       integer :: c, d, n
 
@@ -101,7 +101,7 @@ contains
             product = product + self%weights(d)*dot_product(self%changes(:n, d), border)*self%changes(:n, d)
          end do
          pivot = self%borders(n + 1, c) - dot_product(border, product)
-         singular = abs(pivot) <= nothing*max(abs(self%borders(n + 1, c)), abs(self%borders(n + 1, c) - pivot))
+         singular = abs(pivot) <= rounding*max(abs(self%borders(n + 1, c)), abs(self%borders(n + 1, c) - pivot))
          if (singular) return
          self%change(:n) = product
       end associate

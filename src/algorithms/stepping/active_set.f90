@@ -17,6 +17,7 @@ module mfv_active_set
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, control_force, control_displacement
    use mfv_node_status
    use mfv_sticking_front, only: find_fronts, fronts_type, left, right
+   use mfv_tolerances, only: significant
    implicit none
    private
    public :: find_statuses, first_guess, find_rates, slipping_back, end_of_run
@@ -296,11 +297,10 @@ contains
       integer, intent(in) :: direction(:)
       type(contact_fields_type), intent(in) :: rates
       logical :: along(size(direction))
-      real(wp), parameter :: negligible = 1.0e-9_wp
       real(wp) :: slip(size(along))
 
       slip = rates%slip()
-      along = direction*slip > max(negligible, path%system%rate_tolerance)*maxval(abs(slip))
+      along = direction*slip > max(significant, path%system%rate_tolerance)*maxval(abs(slip))
    end function slipping_along
 
    !> Whether a node that was slipping at the start slips against its slip over the increment: it has stuck in between, where no

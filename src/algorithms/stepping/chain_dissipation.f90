@@ -26,6 +26,7 @@ module mfv_chain_dissipation
    use mfv_lapack, only: dgesv
    use mfv_motions, only: motion_count
    use mfv_node_status
+   use mfv_tolerances, only: significant
    implicit none
    private
    public :: sample_type, chain_dissipation, dissipation_by_rates, dissipation_by_slopes, node_wise_dissipation, &
@@ -245,7 +246,7 @@ contains
       type(contact_fields_type), intent(in) :: after
       real(wp), intent(in) :: tolerance
       real(wp), intent(out) :: work(:), error
-      real(wp), parameter :: at_limit = 1.0e-9_wp, tolerance_factor = 100.0_wp
+      real(wp), parameter :: tolerance_factor = 100.0_wp
       real(wp), dimension(size(work)) :: slipped, limit, limit_after
       logical :: on(size(work))
 
@@ -253,7 +254,7 @@ contains
       limit = model%static_friction*before%fields%pressure
       limit_after = model%static_friction*max(after%pressure, 0.0_wp)
       on = slips(before%status) .and. -before%fields%shear*slip_sign(before%status) &
-           >= limit*(1.0_wp - max(at_limit, tolerance_factor*tolerance))
+           >= limit*(1.0_wp - max(significant, tolerance_factor*tolerance))
       where (on)
          work = -0.5_wp*(before%fields%shear + after%shear)*slipped
       elsewhere(slips(before%status))

@@ -24,6 +24,7 @@ module mfv_contact_path
    use mfv_slip_zones, only: widest_slip_zone
    use mfv_status
    use mfv_strings, only: to_text
+   use mfv_tolerances, only: certified, rounding, significant, visible
    implicit none
    private
    public :: contact_path_type, path_position_type, saved_path_type, new_contact_path, segment_type, iteration_type, note_change, &
@@ -298,7 +299,6 @@ contains
    subroutine note_stiffness(self, force, shift)
       class(contact_path_type), intent(inout) :: self
       real(wp), intent(in) :: force, shift
-      real(wp), parameter :: visible = 1.0e-6_wp
 
       if (.not. self%leaving%pending) return
       if (.not. abs(force) > visible*self%model%friction_scale*self%state%fields%force(motion_approach)) return
@@ -448,13 +448,12 @@ contains
       type(constraints_type), intent(inout) :: constraints
       logical, intent(inout) :: ready
       type(error_type), allocatable, intent(out) :: error
-      real(wp), parameter :: no_moment = 1.0e-14_wp
       real(wp) :: scale
 
       if (self%state%contact_nodes() < 2) then
          associate (load => constraints%load(motion), model => self%model)
             scale = model%compliance%modulus*(model%length()*model%unit_of_arm(motion))
-            if (max(abs(load%value), abs(load%rate), abs(self%state%fields%force(motion) - load%value)) > no_moment*scale) &
+            if (max(abs(load%value), abs(load%rate), abs(self%state%fields%force(motion) - load%value)) > rounding*scale) &
                call no_continuation(self, 'fewer than two nodes are in contact; the '//trim(motions(motion)%force_name)// &
                                     ' tips the upper body over', error)
          end associate
@@ -474,7 +473,7 @@ contains
       integer, intent(in) :: motion
       logical, intent(inout) :: ready
       type(error_type), allocatable, intent(out) :: error
-      real(wp), parameter :: balanced = 1.0e-9_wp, nothing = 1.0e-12_wp, tolerance_factor = 10.0_wp
+      real(wp), parameter :: nothing = 1.0e-12_wp, tolerance_factor = 10.0_wp
       type(constraints_type) :: trial
       type(response_type) :: response
       real(wp) :: wanted, missing, scale, arm, negligible, none
@@ -489,7 +488,7 @@ contains
       negligible = none*self%certificate%force_scale(motion_approach)*arm
       pressed = self%state%fields%force(motion_approach) > none*self%certificate%force_scale(motion_approach)
       if (.not. any(slips(self%state%status))) then
-         if (abs(wanted) > max(balanced*self%state%fields%force(motion_approach)*arm, negligible)) &
+         if (abs(wanted) > max(significant*self%state%fields%force(motion_approach)*arm, negligible)) &
             call self%end_here(merge(MFV_GROSS_SLIDING, MFV_SEPARATED, pressed), &
                                'no node in contact has friction to balance the '//trim(motions(motion)%force_name), error)
          return
@@ -507,7 +506,7 @@ contains
       if (.not. singular) then
          missing = wanted - self%model%resultant(motion, response%rate%pressure, response%rate%shear)
          scale = max(scale, self%model%force(abs(response%rate%shear*self%model%tangential_arm(:, motion))))
-         if (abs(missing) <= max(balanced*scale, tolerance_factor*self%system%tolerance*scale, negligible)) return
+         if (abs(missing) <= max(significant*scale, tolerance_factor*self%system%tolerance*scale, negligible)) return
       end if
       yielding = slips(self%state%status)
       if (.not. singular) yielding = yielding .and. &
@@ -704,10 +703,9 @@ contains
    !> normal force. Derivatives are followed through these nodes.)
    subroutine separate(self)
       class(contact_path_type), intent(inout) :: self
-      real(wp), parameter :: round_off = 1.0e-10_wp
 
       if (allocated(self%derivatives)) return
-      if (any(abs(self%state%fields%pressure) > round_off*self%certificate%traction_scale)) return
+      if (any(abs(self%state%fields%pressure) > certified*self%certificate%traction_scale)) return
       call self%set_status(in_contact(self%state%status), spread(node_open, 1, size(self%state%status)))
       self%state%fields%pressure = 0.0_wp
       self%state%fields%shear = 0.0_wp
@@ -749,7 +747,6 @@ contains
       type(contact_fields_type), intent(in) :: after
       real(wp), intent(in) :: slip_rate(:), dropped
       real(wp), intent(in), optional :: friction_work(:)
-      real(wp), parameter :: moving = 1.0e-9_wp
       real(wp) :: loss, part, fastest
       integer :: i
 
@@ -781,7 +778,7 @@ contains
       fastest = maxval(abs(slip_rate))
       do i = 1, size(slip_rate)
          self%state%slip_direction(i) = 0
-         if (abs(slip_rate(i)) > moving*fastest) self%state%slip_direction(i) = merge(1, -1, slip_rate(i) > 0.0_wp)
+         if (abs(slip_rate(i)) > significant*fastest) self%state%slip_direction(i) = merge(1, -1, slip_rate(i) > 0.0_wp)
       end do
       call self%certificate%check_increment(self%model, self%before, self%state, present(friction_work))
       if (present(friction_work)) self%leaving%pending = .false.
@@ -799,19 +796,17 @@ contains
    !> Whether the normal and the tangential force are constant, up to round-off of the normal force.
    pure logical function forces_stay(before, after)
       type(contact_fields_type), intent(in) :: before, after
-      real(wp), parameter :: round_off = 1.0e-9_wp
 
-      forces_stay = maxval(abs(after%force(:motion_shift) - before%force(:motion_shift))) <= round_off*after%force(motion_approach)
+     forces_stay = maxval(abs(after%force(:motion_shift) - before%force(:motion_shift))) <= significant*after%force(motion_approach)
    end function forces_stay
 
    !> Update slip_zone_nodes, except by slip zones of round-off: in a repeated cycle many nodes reach their limit together at the
    !> very end.
    subroutine note_slip_zones(self)
       class(contact_path_type), intent(inout) :: self
-      real(wp), parameter :: round_off = 1.0e-6_wp
 
       if (.not. self%model%tangential) return
-      if (self%state%dissipation - self%before%dissipation > round_off*(self%state%dissipation - self%start_dissipation)) &
+      if (self%state%dissipation - self%before%dissipation > visible*(self%state%dissipation - self%start_dissipation)) &
          self%slip_zone_nodes = max(self%slip_zone_nodes, widest_slip_zone(self%state%status))
    end subroutine note_slip_zones
 

@@ -20,6 +20,7 @@ module mfv_conventional
    use mfv_observer, only: observer_type
    use mfv_status
    use mfv_strings, only: to_text
+   use mfv_tolerances, only: significant
    implicit none
    private
    public :: apply_conventionally
@@ -42,7 +43,6 @@ contains
       type(segment_type), intent(in) :: segment
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
-      real(wp), parameter :: whole = 1.0e-9_wp
       integer, allocatable :: converged(:)
       real(wp), allocatable :: memory(:, :)
       real(wp) :: done
@@ -52,7 +52,7 @@ contains
       done = 0.0_wp
       do while (done < 1.0_wp .and. .not. allocated(error))
          done = done + path%model%scene%method%load_step
-         if (done > 1.0_wp - whole) done = 1.0_wp
+         if (done > 1.0_wp - significant) done = 1.0_wp
          again = .true.
          do while (again)
             converged = path%state%status

@@ -11,6 +11,7 @@ module mfv_derivative_increments
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_count, motion_approach, motion_shift, control_force
    use mfv_node_status
+   use mfv_tolerances, only: visible
    implicit none
    private
    public :: differentiate_increment, differentiate_end
@@ -140,7 +141,6 @@ contains
       type(explicit_type), intent(in) :: explicit
       type(contact_fields_type), intent(inout) :: change
       logical, intent(out) :: separates
-      real(wp), parameter :: same = 1.0e-6_wp
       real(wp) :: step(size(increment%violations%step)), mean
       logical :: ends(size(increment%violations%step))
       integer :: i
@@ -152,7 +152,7 @@ contains
             if (ends(i)) step(i) = displacement(path, increment, explicit, change, i)
          end do
          mean = sum(step)/count(ends)
-         separates = any(ends .and. abs(step - mean) > same*maxval(abs(step)))
+         separates = any(ends .and. abs(step - mean) > visible*maxval(abs(step)))
          where (ends .and. violations%kind == event_close) &
             change%tangential = change%tangential + (step - mean)*(rate%tangential - rate%motion(motion_shift))
          call change%move(mean, rate)

@@ -28,6 +28,7 @@ module mfv_first_violation
    use mfv_rate_problem, only: find_statuses_by_rates
    use mfv_status
    use mfv_strings, only: to_text
+   use mfv_tolerances, only: rounding, significant, visible
    implicit none
    private
    public :: apply_by_violations, most_residual
@@ -42,13 +43,13 @@ module mfv_first_violation
    !> Changes at one load, plus one for each node, before the rates of all nodes are solved for at once.
    integer, parameter :: many_changes = 30
    !> Tolerance of rates after cycling, which suggests that some of them are round-off.
-   real(wp), parameter :: larger_rate_tolerance = 1.0e-9_wp
+   real(wp), parameter :: larger_rate_tolerance = significant
    !> The shortest trial increment, as a fraction of a segment.
    real(wp), parameter :: shortest_trial = 1.0e-8_wp
    !> A state with a larger certificate is rejected.
-   real(wp), parameter :: failed_certificate = 1.0e-6_wp
+   real(wp), parameter :: failed_certificate = visible
    !> The largest admissible jump of the tractions, relative to the largest traction.
-   real(wp), parameter :: largest_jump = 1.0e-6_wp
+   real(wp), parameter :: largest_jump = visible
    !> Both are at least this factor times the tolerance of the linear solver.
    real(wp), parameter :: tolerance_factor = 1.0e3_wp
 
@@ -185,14 +186,13 @@ contains
    pure real(wp) function last_step(path, segment)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
-      real(wp), parameter :: round_off = 1.0e-14_wp, largest = 1.0e-6_wp
       real(wp) :: negligible
 
       last_step = shortest_step(path)
-      negligible = max(round_off, path%system%tolerance)*path%certificate%force_scale(motion_approach)
+      negligible = max(rounding, path%system%tolerance)*path%certificate%force_scale(motion_approach)
       associate (normal => segment%load(motion_approach))
          if (normal%control /= control_force .or. .not. normal%rate < 0.0_wp) return
-         if (abs(normal%value + normal%rate) <= negligible) last_step = max(last_step, min(negligible/(-normal%rate), largest))
+         if (abs(normal%value + normal%rate) <= negligible) last_step = max(last_step, min(negligible/(-normal%rate), visible))
       end associate
    end function last_step
 

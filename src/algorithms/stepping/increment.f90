@@ -18,13 +18,14 @@ module mfv_increment
    use mfv_kinds, only: wp
    use mfv_node_status
    use mfv_scene, only: integration_explicit, stepping_nominal
+   use mfv_tolerances, only: certified, significant, visible
    implicit none
    private
    public :: increment_type, find_increment, shortest_step, tie_tolerance
 
    !> Steps below `zero_step`, a fraction of path%unit_step, count as zero; steps that differ by less than the fraction `least_tie`
    !> are tied.
-   real(wp), parameter :: zero_step = 1.0e-13_wp, least_tie = 1.0e-10_wp
+   real(wp), parameter :: zero_step = 1.0e-13_wp, least_tie = certified
 
    type :: increment_type
       type(response_type) :: response
@@ -199,7 +200,7 @@ contains
       type(increment_type), intent(inout) :: increment
       logical, intent(out) :: agrees
       integer, parameter :: most_passes = 12
-      real(wp), parameter :: same_step = 1.0e-9_wp, tolerance_factor = 10.0_wp
+      real(wp), parameter :: tolerance_factor = 10.0_wp
       real(wp) :: same
       type(constraints_type) :: secants
       type(contact_fields_type) :: after
@@ -207,7 +208,7 @@ contains
       integer :: pass
 
       step = length
-      same = max(same_step, tolerance_factor*path%system%tolerance)
+      same = max(significant, tolerance_factor*path%system%tolerance)
       secants = constraints
       after = path%state%fields%plus(step, increment%response%rate)
       call guess_touching(path, after)
@@ -297,7 +298,6 @@ contains
       real(wp), intent(in) :: length, rate_tolerance
       logical, intent(in) :: relaxing
       type(increment_type), intent(inout) :: increment
-      real(wp), parameter :: shortest = 1.0e-6_wp
       real(wp) :: trial
 
       trial = merge(1.0_wp, length, relaxing)
@@ -306,7 +306,7 @@ contains
       call search(path, rate_tolerance, trial, increment)
       ! Slip rates are constant between events: bisection shows whether a wrong direction is wrong from the start.
       do while (increment%step <= shortest_step(path) .and. any(increment%violations%kind == event_stick) .and. &
-                trial > shortest*length)
+                trial > visible*length)
          trial = 0.5_wp*trial
          call solve_trial(path, constraints, trial, increment)
          if (increment%singular) return

@@ -29,6 +29,7 @@ module mfv_leap
    use mfv_observer, only: observer_type
    use mfv_straight, only: apply_directly, before_separation, lacks_support, find_statuses_on_mesh, finish_large_increment, &
                            grow_mesh, subsegment
+   use mfv_tolerances, only: rounding, significant, visible
    implicit none
    private
    public :: apply_by_large_increments
@@ -284,11 +285,11 @@ contains
    !> and corrections of slips are used. Without coupling this would save nothing: the preconditioner is exact.
    subroutine allow_errors(path)
       class(contact_path_type), intent(inout) :: path
-      real(wp), parameter :: negligible = 1.0e-6_wp, most = 1.0e-9_wp, in_rates = 1.0e-2_wp, most_in_rates = 1.0e-4_wp
+      real(wp), parameter :: most = 1.0e-9_wp, in_rates = 1.0e-2_wp, most_in_rates = 1.0e-4_wp
 
       if (.not. (path%model%compliance%has_block(block_up) .and. path%model%compliance%has_block(block_wt))) return
       associate (accuracy => path%model%scene%method%accuracy)
-         path%system%allowed = min(negligible*accuracy, most)
+         path%system%allowed = min(visible*accuracy, most)
          path%system%allowed_in_rates = min(in_rates*accuracy, most_in_rates)
       end associate
    end subroutine allow_errors
@@ -458,17 +459,16 @@ contains
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(in) :: rate
       integer, intent(out) :: wanted(:)
-      real(wp), parameter :: negligible = 1.0e-9_wp
       real(wp) :: excess(size(wanted)), tolerance
       logical :: at_limit(size(wanted))
 
-      tolerance = max(negligible, path%system%tolerance)
+      tolerance = max(significant, path%system%tolerance)
       wanted = path%state%status
       associate (fields => path%state%fields, limit => path%model%static_friction)
          at_limit = abs(fields%shear) >= limit*fields%pressure*(1.0_wp - tolerance)
          excess = sign(1.0_wp, fields%shear)*rate%shear - limit*rate%pressure
          where (slipping_back(path, path%state%status, rate)) wanted = node_stick
-         tolerance = max(negligible, path%system%rate_tolerance)
+         tolerance = max(significant, path%system%rate_tolerance)
          where (path%state%status == node_stick .and. at_limit .and. excess > tolerance*maxval(abs(rate%shear))) &
             wanted = merge(node_slip_left, node_slip_right, fields%shear > 0.0_wp)
       end associate
@@ -557,9 +557,8 @@ contains
    logical function has_shear(path, fields)
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(in) :: fields
-      real(wp), parameter :: nothing = 1.0e-14_wp
 
-      has_shear = maxval(abs(fields%shear)) > max(nothing, path%system%tolerance) &
+      has_shear = maxval(abs(fields%shear)) > max(rounding, path%system%tolerance) &
                   *max(path%certificate%traction_scale, maxval(abs(fields%pressure)))
    end function has_shear
 

@@ -13,6 +13,7 @@ module mfv_rate_problem
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_approach
    use mfv_node_status
+   use mfv_tolerances, only: significant
    implicit none
    private
    public :: find_statuses_by_rates
@@ -64,7 +65,7 @@ contains
    subroutine find_undecided(path, node, sort)
       class(contact_path_type), intent(in) :: path
       integer, allocatable, intent(out) :: node(:), sort(:)
-      real(wp), parameter :: none = 1.0e-9_wp, closed = 1.0e-12_wp
+      real(wp), parameter :: closed = 1.0e-12_wp
       real(wp), dimension(size(path%state%status)) :: gap
       real(wp) :: pressure_scale, gap_scale, limit
       integer :: i
@@ -75,9 +76,9 @@ contains
       allocate (node(0), sort(0))
       do i = 1, size(gap)
          associate (pressure => path%state%fields%pressure(i), shear => path%state%fields%shear(i))
-            if (in_contact(path%state%status(i)) .and. pressure > none*pressure_scale) then
+            if (in_contact(path%state%status(i)) .and. pressure > significant*pressure_scale) then
                limit = path%model%static_friction(i)*pressure
-               if (.not. path%model%tangential .or. abs(shear) < limit*(1.0_wp - none)) cycle
+               if (.not. path%model%tangential .or. abs(shear) < limit*(1.0_wp - significant)) cycle
                node = [node, i]
                sort = [sort, merge(-1, 1, shear > 0.0_wp)]
             else if (in_contact(path%state%status(i)) .or. &

@@ -4,6 +4,7 @@ module mfv_recent_intervals
    use mfv_contact_system, only: load_type
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_count
+   use mfv_tolerances, only: significant
    implicit none
    private
    public :: recent_intervals_type
@@ -84,10 +85,9 @@ contains
    !> Whether two loads are equal up to round-off.
    elemental logical function same(a, b)
       type(load_type), intent(in) :: a, b
-      real(wp), parameter :: round_off = 1.0e-9_wp
 
       same = a%control == b%control .and. max(abs(a%value - b%value), abs(a%rate - b%rate)) &
-             <= round_off*max(abs(a%value), abs(a%rate))
+             <= significant*max(abs(a%value), abs(a%rate))
    end function same
 
 end module mfv_recent_intervals

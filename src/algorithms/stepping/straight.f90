@@ -15,6 +15,7 @@ module mfv_straight
    use mfv_observer, only: observer_type
    use mfv_scene, only: stepping_nominal
    use mfv_strings, only: to_text
+   use mfv_tolerances, only: significant
    implicit none
    private
    public :: apply_directly, find_statuses_on_mesh, grow_mesh, before_separation, lacks_support, &
@@ -139,12 +140,12 @@ contains
    !> zero, then up to a small rest. (At zero force the pressures of any contact are zero.)
    pure real(wp) function before_separation(segment) result(fraction)
       type(segment_type), intent(in) :: segment
-      real(wp), parameter :: nothing = 1.0e-9_wp, little = 1.0e-4_wp
+      real(wp), parameter :: little = 1.0e-4_wp
 
       fraction = 1.0_wp
       if (segment%load(motion_approach)%control /= control_force) return
       associate (start => segment%load(motion_approach)%value, change => segment%load(motion_approach)%rate)
-         if (start + change > nothing*abs(start) .and. start + change > 0.0_wp) return
+         if (start + change > significant*abs(start) .and. start + change > 0.0_wp) return
          fraction = 0.0_wp
          if (start > 0.0_wp) fraction = (1.0_wp - little)*start/(-change)
       end associate

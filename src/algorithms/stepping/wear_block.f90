@@ -33,6 +33,7 @@ module mfv_wear_block
    use mfv_lapack, only: dgesv
    use mfv_motions, only: motion_approach
    use mfv_node_status, only: in_contact
+   use mfv_tolerances, only: significant, visible
    use mfv_wear, only: wear_archard
    implicit none
    private
@@ -208,7 +209,6 @@ contains
       real(wp), intent(in) :: work(:)
       integer, intent(in) :: margin
       type(problem_type), intent(inout) :: problem
-      real(wp), parameter :: loaded = 1.0e-6_wp
       logical :: contact(size(work)), known(size(work))
       real(wp) :: rate(size(work)), softness(size(work)), gap(size(work)), pressure(size(work))
       integer :: i, first, last
@@ -218,7 +218,7 @@ contains
          if (wear%law == wear_archard) rate = rate/max(model%kinetic_friction, tiny(1.0_wp))
          call find_pressures(path%state, rate, pressure, known)
          contact = known .or. in_contact(path%state%status)
-         known = known .or. contact .and. pressure > loaded*maxval(pressure)
+         known = known .or. contact .and. pressure > visible*maxval(pressure)
          first = findloc(known, .true., dim=1)
          last = findloc(known, .true., dim=1, back=.true.)
          problem%node = pack([(i, i=max(1, first - margin), min(size(work), last + margin))], &
@@ -253,9 +253,8 @@ contains
       real(wp), intent(in) :: rate(:)
       real(wp), intent(out) :: pressure(:)
       logical, intent(out) :: slips(:)
-      real(wp), parameter :: round_off = 1.0e-9_wp
 
-      slips = rate > round_off*maxval(rate) .and. state%pressure_work > 0.0_wp
+      slips = rate > significant*maxval(rate) .and. state%pressure_work > 0.0_wp
       pressure = 0.0_wp
       where (slips)
          pressure = state%pressure_work/state%cycle_work

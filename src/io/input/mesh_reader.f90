@@ -8,6 +8,7 @@ module mfv_mesh_reader
    use mfv_kinds, only: pi, wp
    use mfv_scene, only: scene_type
    use mfv_strings, only: list_of_words, string_type, to_text
+   use mfv_tolerances, only: significant
    implicit none
    private
    public :: read_mesh
@@ -194,7 +195,7 @@ contains
       type(scene_type), intent(in) :: scene
       type(body_type), intent(in) :: body
       type(error_type), allocatable, intent(out) :: error
-      real(wp), parameter :: whole = 1.0e-9_wp, most_intervals = 5.0e7_wp
+      real(wp), parameter :: most_intervals = 5.0e7_wp
       real(wp) :: interval, intervals
       character(:), allocatable :: remedy
       integer :: nodes, fewest
@@ -203,7 +204,7 @@ contains
       if (.not. body%deforms_as_circle()) return
       call choose_mesh(scene, nodes, interval, growing)
       intervals = intervals_round(scene, body, interval)
-      if (nodes > intervals*(1.0_wp + whole)) then
+      if (nodes > intervals*(1.0_wp + significant)) then
          call reader%complain('mesh', 1, trim(mesh_key(reader)), &
                               'wraps around body '//to_text(number)//' more than once; reduce it', error)
       else if (body%elasticity%kernel /= kernel_fourier) then
@@ -211,10 +212,10 @@ contains
       else if (intervals > most_intervals) then
          call reader%complain('body', number, 'kernel', 'the circle would have '//to_text(intervals, 3)// &
                               ' intervals, more than '//to_text(most_intervals)//"; use kernel='exact'", error)
-      else if (abs(intervals - anint(intervals)) > whole*intervals) then
+      else if (abs(intervals - anint(intervals)) > significant*intervals) then
          remedy = "make 180*nodes/half_angle whole, or use kernel='exact'"
          ! Nodes are on another circle.
-         if (abs(body%radius - scene%arc_radius()) > whole*body%radius .and. .not. scene%mesh%radial) &
+         if (abs(body%radius - scene%arc_radius()) > significant*body%radius .and. .not. scene%mesh%radial) &
             remedy = "use kernel='exact' for this body: the mesh divides the other circle, of the radius "// &
                      to_text(scene%arc_radius())
          call reader%complain('body', number, 'kernel', 'needs a whole number of intervals around the circle of body '// &

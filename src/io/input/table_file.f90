@@ -12,6 +12,7 @@ module mfv_table_file
    use mfv_status, only: MFV_INPUT_ERROR
    use mfv_strings, only: add_text, lower_case, shortened, string_type, to_text
    use mfv_text_file, only: byte_order_mark, find_fault_of_text, read_text
+   use mfv_tolerances, only: significant
    implicit none
    private
    public :: read_table, read_named_table
@@ -462,13 +463,12 @@ contains
       integer, intent(in) :: rows(:)
       real(wp), allocatable, intent(inout) :: table(:, :)
       type(error_type), allocatable, intent(out) :: error
-      real(wp), parameter :: round_off = 1.0e-9_wp
       integer :: n, i
       logical :: are_numbers
 
       n = size(table, 2)
-      are_numbers = n > 1 .and. abs(table(1, 1)*(table(1, 1) - 1.0_wp)) < round_off
-      are_numbers = are_numbers .and. all([(abs(table(1, i) - table(1, 1) - (i - 1)) < round_off, i=1, n)])
+      are_numbers = n > 1 .and. abs(table(1, 1)*(table(1, 1) - 1.0_wp)) < significant
+      are_numbers = are_numbers .and. all([(abs(table(1, i) - table(1, 1) - (i - 1)) < significant, i=1, n)])
       are_numbers = are_numbers .and. (all(table(2, 2:) > table(2, :n - 1)) .or. all(table(2, 2:) < table(2, :n - 1)))
       if (are_numbers) then
          table = table(2:, :)

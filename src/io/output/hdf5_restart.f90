@@ -19,6 +19,7 @@ module mfv_hdf5_restart
    use mfv_simulation, only: mark_count, simulation_type, snapshot_type, trial_type
    use mfv_status, only: MFV_INPUT_ERROR
    use mfv_strings, only: to_text
+   use mfv_tolerances, only: significant
    use mfv_wear_block, only: widened
    implicit none
    private
@@ -26,7 +27,7 @@ module mfv_hdf5_restart
 
    character(*), parameter :: restart_group = 'restart'
    !> Relative tolerance for scenes to be the same.
-   real(wp), parameter :: same = 1.0e-9_wp
+   real(wp), parameter :: same = significant
    !> Upper limit of counts.
    integer, parameter :: most = 1000000000
    character(*), parameter :: internal = 'internal values of this version of MFV, for --resume'

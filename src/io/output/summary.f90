@@ -12,6 +12,7 @@ module mfv_summary
    use mfv_simulation, only: simulation_type
    use mfv_status, only: status_outcome
    use mfv_strings, only: string_type, to_text
+   use mfv_tolerances, only: visible
    implicit none
    private
    public :: summarize, summarize_check, unit_suffix
@@ -177,7 +178,6 @@ contains
       !> Whether the largest value exceeds the one at the end by more than a rounding error.
       pure logical function is_above_end(name)
          character(*), intent(in) :: name
-         real(wp), parameter :: round_off = 1.0e-6_wp
          integer :: largest, last
 
          largest = field_named(fields, 'largest_'//name)
@@ -185,7 +185,7 @@ contains
          is_above_end = largest > 0 .and. last > 0
          ! NaN: singular.
          if (is_above_end) is_above_end = ieee_is_finite(fields(largest)%values(1)) .and. ieee_is_finite(fields(last)%values(1))
-         if (is_above_end) is_above_end = fields(largest)%values(1) > (1.0_wp + round_off)*fields(last)%values(1)
+         if (is_above_end) is_above_end = fields(largest)%values(1) > (1.0_wp + visible)*fields(last)%values(1)
       end function is_above_end
 
       !> A line with one or two extremes, where they exist.
@@ -309,7 +309,6 @@ contains
    subroutine add_sensitivity(text, simulation)
       character(:), allocatable, intent(inout) :: text
       type(simulation_type), intent(in) :: simulation
-      real(wp), parameter :: chaotic = 1.0e-6_wp
 
       associate (s => simulation%sensitivity)
          if (s%message /= '') then
@@ -321,7 +320,7 @@ contains
                        ' of the largest traction,')
          call add_line(text, 'sensitivity', 'dissipation by '//to_text(s%dissipation, 1)//' (relative), the stick ratio by '// &
                        to_text(s%stick_ratio, 1))
-         if (max(s%pressure, s%shear, s%dissipation, s%stick_ratio) > chaotic) &
+         if (max(s%pressure, s%shear, s%dissipation, s%stick_ratio) > visible) &
             call add_line(text, 'sensitivity', 'this result depends on round-off: do not quote it more precisely than these '// &
                           'changes')
       end associate
