@@ -12,6 +12,7 @@ module mfv_edge_solutions
    use mfv_kinds, only: pi, wp
    use mfv_lapack, only: dgesv
    use mfv_quadrature, only: gauss_points
+   use mfv_tolerances, only: rounding
    implicit none
    private
    public :: find_solved_distance, discrete_over_exact, graded_solution_type, new_graded_solution, least_power, most_power
@@ -115,12 +116,17 @@ contains
       real(wp) :: found(numbers)
       logical :: others(powers)
 
-      found = 0.0_wp
-      do i = 1, powers
-         others = .true.
-         others(i) = .false.
-         found = found + solutions(:, i)*product((power - tabulated)/(tabulated(i) - tabulated), mask=others)
-      end do
+      i = nint((power - least_power)*(powers - 1)/(most_power - least_power)) + 1
+      if (abs(power - tabulated(min(max(i, 1), powers))) <= rounding) then
+         found = solutions(:, i)  ! such as 1/2
+      else
+         found = 0.0_wp
+         do i = 1, powers
+            others = .true.
+            others(i) = .false.
+            found = found + solutions(:, i)*product((power - tabulated)/(tabulated(i) - tabulated), mask=others)
+         end do
+      end if
       offset = found(1)
       associate (n => most_tabulated + 1)
          g = found(2:n + 1)
