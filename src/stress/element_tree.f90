@@ -5,8 +5,8 @@
 !>
 !>     integral of sigma/(s - z) ds = - sum over k >= 0 of M_k/(z - c)^(k+1),  M_k = integral of sigma (s - c)^k ds.
 !>
-!> Groups are the nodes of a binary tree. Moments of its leaves are found by quadrature or, along a straight surface, in closed form,
-!> the others from those of their halves.
+!> Groups are the nodes of a binary tree. Moments of its leaves are found by quadrature or, along a straight surface, in closed
+!> form, the others from those of their halves.
 module mfv_element_tree
    use mfv_kinds, only: wp
    implicit none

@@ -93,8 +93,9 @@ contains
       simulation%estimate = estimate
    end subroutine estimate_error
 
-   !> Where a quantity is largest is not resolved if it is uncertain by so much that it may be as large elsewhere. `values`: of all
-   !> observables on all meshes; their bars, shape (observable_count).
+   !> Where a quantity is largest is not resolved if it is uncertain by so much that it may be as large elsewhere; but a slip range
+   !> is uncertain by what the outermost node misses. `values`: of all observables on all meshes; their bars, shape
+   !> (observable_count).
    pure subroutine drop_uncertain_places(values, bars)
       real(wp), intent(in) :: values(:, :)
       type(error_bar_type), intent(inout) :: bars(:)
@@ -105,6 +106,7 @@ contains
       do place = 1, observable_count
          if (observables(place)%error /= error_place .or. .not. bars(place)%known) cycle
          name = trim(observables(place)%name)
+         if (name == 'largest_slip_range_x') cycle
          largest = observable_place(name(:len(name) - 2))  ! without _x or _y
          if (.not. bars(largest)%known) cycle
          if (bars(largest)%error > uncertain*abs(values(largest, 1))) bars(place) = unresolved_bar(values(place, :))
