@@ -162,11 +162,12 @@ def judge(problem: Problem, base: mfv.Result, truth: Truth) -> dict[str, Verdict
                     scales.where_it_vanishes(name),
                     size,
                     right,
-                    _bar_of_row(base, path, row, value, last, bar),
-                    flagged,
+                    bar_of_row,
+                    flagged or bar_of_row == math.inf,
                     name,
                 )
                 for row, (value, one, two) in enumerate(zip(values, *there))
+                for bar_of_row in [_bar_of_row(base, path, row, value, last, bar)]
             ),
             key=lambda verdict: (WORDS.index(verdict.word), verdict.error),
             default=Verdict("right", 0.0, bar, 0.0, math.nan, math.nan),

@@ -462,7 +462,8 @@ contains
       allowances = of_behaviour(observables%error)
       if (simulation%cycle_count > 0 .and. simulation%marks(mark_reversal)%step > 0) then
          of_behaviour = allowances_of_behaviours(simulation, simulation%padded(simulation%marks(mark_reversal)))
-         where (index(observables%name, '_reversal') > 0) allowances = max(allowances, of_behaviour(observables%error))
+         where (index(observables%name, '_reversal') > 0 .or. observables%name == 'smallest_stick_ratio' .or. &
+                observables%name == 'largest_stick_ratio') allowances = max(allowances, of_behaviour(observables%error))
       end if
       associate (model => simulation%contact%model)
          where (observables%error == error_edges .and. observables%unit == '1') &

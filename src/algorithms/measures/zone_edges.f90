@@ -17,7 +17,7 @@ module mfv_zone_edges
    use mfv_contact_state, only: contact_state_type
    use mfv_edge_solutions, only: graded_solution_type, least_power, most_power, new_graded_solution, find_solved_distance
    use mfv_kinds, only: pi, wp
-   use mfv_motions, only: motion_shift
+   use mfv_motions, only: control_keep, motion_shift
    use mfv_node_status, only: holds, in_contact, slip_sign, slips
    use mfv_surface_tractions, only: root_shift
    use mfv_tolerances, only: certified, significant, visible
@@ -409,6 +409,8 @@ contains
          real(wp), intent(inout) :: edge, error
          !> In intervals; unequal ones have mean slips.
          real(wp), parameter :: agreement(2) = [0.35_wp, 1.0_wp], straight = 0.3_wp
+         !> Steps in which older edges are those of the present reversals: one shear, or the two ends of a cycle.
+         integer, parameter :: alike = 2
          integer :: node, i
          real(wp) :: by_slip, values(0:2)
 
@@ -420,7 +422,11 @@ contains
          end do
          if (abs(values(2) - 2.0_wp*values(1) + values(0)) > straight*(values(1) - values(0))) return
          by_slip = edge_by_slip(model, state, next, side, edge)
-         if (abs(by_slip - edge) <= agreement(merge(2, 1, samples%is_integral))*model%width(last)) return
+         if (abs(by_slip - edge) <= agreement(merge(2, 1, samples%is_integral))*model%width(last)) then
+            ! An older edge in the same interval is not seen in the tractions.
+            if (count(model%scene%steps%control(motion_shift) /= control_keep) > alike) error = max(error, abs(by_slip - edge))
+            return
+         end if
          error = max(error, min(abs(by_slip - edge), error_if_unknown*model%width(last)))
          edge = by_slip
       end subroutine correct_by_slip
