@@ -610,17 +610,18 @@ contains
       !> (C(0) - C(1))/(C(1) - C(2)), C(j) = (j - 1/2) ln|j - 1/2| - (j + 1/2) ln(j + 1/2).
       real(wp), parameter :: ratio = 1.5_wp*log(3.0_wp)/(2.5_wp*log(2.5_wp) - 3.0_wp*log(1.5_wp) - 0.5_wp*log(2.0_wp))
       real(wp) :: entries(1, -about:about), steps(2)
-      integer :: j
+      integer :: middle, j
 
       has_known_error = allocated(model%scene%mesh%ends) .and. samples >= fewest
       if (allocated(model%scene%mesh%ends)) return
-      if (samples < fewest .or. node - about < 1 .or. node + about > model%nodes()) return
-      call model%compliance%entries(block_wp, [node], [(node + j, j=-about, about)], entries)
-      entries(1, :) = entries(1, :)/model%width(node - about:node + about)
+      if (samples < fewest .or. model%nodes() < 2*about + 1) return
+      middle = min(max(node, about + 1), model%nodes() - about)
+      call model%compliance%entries(block_wp, [middle], [(middle + j, j=-about, about)], entries)
+      entries(1, :) = entries(1, :)/model%width(middle - about:middle + about)
       steps = [2.0_wp*entries(1, 0) - entries(1, -1) - entries(1, 1), &
                entries(1, -1) + entries(1, 1) - entries(1, -2) - entries(1, 2)]
       has_known_error = abs(steps(1) - ratio*steps(2)) <= near*abs(steps(1)) .and. &
-                        maxval(abs(model%width(node - about:node + about) - model%width(node))) <= near*model%width(node)
+                        maxval(abs(model%width(middle - about:middle + about) - model%width(node))) <= near*model%width(node)
    end function has_known_error
 
    !> See distance_to_zero; with a known discretisation error, the edge of its discrete solution.
