@@ -403,7 +403,7 @@ def shear(result: Result, ax: Axes | None = None, step: int | None = None) -> Ax
     if "shear" in result.reference and is_last(result, state):
         _draw_closed_form(ax, result, result.reference.shear)
     limits = [limit_of_friction(coefficient, state) for _, coefficient in friction_limits(result)]
-    _cut_spikes(ax, np.abs(np.concatenate([state.shear, *limits])[np.tile(state.status != NodeStatus.OPEN, 1 + len(limits))]))
+    _cut_spikes(ax, np.max(np.abs([state.shear, *limits]), axis=0)[state.status != NodeStatus.OPEN])
     ax.set_ylabel(_label("shear traction", r"\tau", state.unit("shear")))
     _frame_contact(ax, result, state)
     return ax

@@ -296,6 +296,14 @@ def test_spikes_at_corners_do_not_flatten_the_rest() -> None:
     assert np.ptp(surfaces.get_ylim()) > 1.0e-4 * abs(punch.summary.approach)
 
 
+def test_limits_of_friction_are_drawn_whole_where_there_is_no_shear() -> None:
+    pressed = cylinder(PRESS, coupling="none").run(check=True)
+    assert np.all(pressed.state.shear == 0.0)
+    ax = mfv.plot.shear(pressed, Figure().subplots())
+    limit = float(np.max(pressed.mesh.static_friction * pressed.state.pressure))
+    assert -ax.get_ylim()[0] >= limit and ax.get_ylim()[1] >= limit and not ax.texts
+
+
 def test_panels_are_all_tested_here() -> None:
     taking_axes = {
         name
