@@ -41,15 +41,13 @@ contains
       integer :: group
 
       call divide(self, size(place, 2))
-      do group = size(self%first), 1, -1
-         if (self%halves(group) == 0) then
-            associate (i => self%first(group), j => self%last(group))
-               call add_leaf(self, group, ends(:, i:j), place(:, i:j), sigma(:, i:j), weight(:, i:j))
-            end associate
-         else
-            call join_halves(self, group)
-         end if
+      do group = 1, size(self%first)
+         if (self%halves(group) /= 0) cycle
+         associate (i => self%first(group), j => self%last(group))
+            call add_leaf(self, group, ends(:, i:j), place(:, i:j), sigma(:, i:j), weight(:, i:j))
+         end associate
       end do
+      call join_groups(self)
    end function new_element_tree
 
    !> Elements from `from` to `to` along the real axis, with sigma linear from `first` to `last`; shapes (elements).
@@ -59,15 +57,13 @@ contains
       integer :: group
 
       call divide(self, size(from))
-      do group = size(self%first), 1, -1
-         if (self%halves(group) == 0) then
-            associate (i => self%first(group), j => self%last(group))
-               call add_straight_leaf(self, group, from(i:j), to(i:j), first(i:j), last(i:j))
-            end associate
-         else
-            call join_halves(self, group)
-         end if
+      do group = 1, size(self%first)
+         if (self%halves(group) /= 0) cycle
+         associate (i => self%first(group), j => self%last(group))
+            call add_straight_leaf(self, group, from(i:j), to(i:j), first(i:j), last(i:j))
+         end associate
       end do
+      call join_groups(self)
    end function new_straight_tree
 
    !> Divide some elements into groups, without their moments.
@@ -154,6 +150,16 @@ contains
          shear = shear*ratio
       end do
    end subroutine add_leaf
+
+   !> Groups of groups from their leaves upwards: halves have larger numbers.
+   pure subroutine join_groups(self)
+      type(element_tree_type), intent(inout) :: self
+      integer :: group
+
+      do group = size(self%first), 1, -1
+         if (self%halves(group) /= 0) call join_halves(self, group)
+      end do
+   end subroutine join_groups
 
    !> Middle, radius and moments of a group from those of its halves.
    pure subroutine join_halves(self, group)

@@ -36,7 +36,7 @@ def solutions(power: float, nodes: int) -> tuple[float, np.ndarray, np.ndarray, 
         factor[n] = -sum(m * series[m] * factor[n - m] for m in range(1, n + 1)) / n
 
     def solution(exponent: float) -> np.ndarray:
-        """That with the generating function factor(z) (1 - z)^-exponent; 1 u^(exponent - 1)/gamma(exponent) at first."""
+        """That with the generating function factor(z) (1 - z)^-exponent: u^(exponent - 1)/gamma(exponent) far from the edge."""
         powers = np.cumprod([1.0, *((n - 1 + exponent) / n for n in range(1, nodes))])
         return np.convolve(factor, powers)[:nodes] / math.exp(-series[1:].sum())
 
@@ -60,7 +60,7 @@ def test_tabulated_solutions() -> None:
 
 
 def test_solutions_far_from_the_edge() -> None:
-    """They tend to the powers of the distance; g and h faster than its inverse square (they have no other power)."""
+    """They tend to the powers of the distance: k with the first order of its inverse, g and h, of no other power, with the second."""
     for power in (0.35, 0.5, 0.62):
         offset, g, k, h = solutions(power, 41)
         for found, exponent, order in ((k, power - 1, 1), (g, power, 2), (h, power + 1, 2)):

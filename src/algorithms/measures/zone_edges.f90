@@ -289,6 +289,8 @@ contains
       integer, intent(in) :: side
       real(wp), intent(out) :: edge, error
       type(samples_type) :: samples
+      real(wp) :: distance
+      logical :: solved
       integer :: outermost
 
       outermost = merge(patch%last, patch%first, side > 0)
@@ -297,9 +299,9 @@ contains
       if (merge(patch%right_ends, patch%left_ends, side > 0)) return
       samples = sampled(model, state%fields%pressure, outermost, merge(patch%first, patch%last, side > 0))
       samples%is_regular = has_known_error(model, outermost, samples%number)
-      samples = straightened(samples, merge(patch%right_power, patch%left_power, side > 0))
-      edge = model%arc(outermost) + side*model%width(outermost)*refined_distance(samples)
-      error = model%width(outermost)*uncertainty(samples)
+      call find_distance(straightened(samples, merge(patch%right_power, patch%left_power, side > 0)), distance, error, solved)
+      edge = model%arc(outermost) + side*model%width(outermost)*distance
+      error = model%width(outermost)*error
    end subroutine find_contact_edge
 
    !> Number of neighbouring nodes that slip in one direction, from a node to the left (-1) or right (1).
@@ -481,20 +483,16 @@ contains
       real(wp), parameter :: clearly = 2.0_wp
       type(samples_type) :: straight
       real(wp) :: steady, grown, weight, of_grown
-      logical :: found
+      logical :: solved
 
       straight = straightened(samples, power)
-      error = uncertainty(straight)
-      if (straight%is_integral .and. straight%is_regular) then
-         call find_graded_distance(straight, distance, found)
-         if (found) return
-      end if
+      call find_distance(straight, distance, error, solved)
+      if (straight%is_integral .and. solved) return
       steady = bend(straight)
       grown = clearly*bend(straightened(samples, power + 1.0_wp))
       weight = 0.0_wp
       if (min(steady, grown) < unknown_bend) weight = min(max((samples%zone - short)/real(short, wp), 0.0_wp), 1.0_wp) &
                                                       *steady**steepness/(steady**steepness + grown**steepness)
-      distance = refined_distance(straight)
       if (.not. weight > 0.0_wp) return
       of_grown = distance_to_zero(straightened(samples, power + 1.0_wp), .true.)
       error = max((1.0_wp - weight)*(error + weight*abs(of_grown - distance)), least_error)
@@ -624,37 +622,12 @@ contains
                         maxval(abs(model%width(middle - about:middle + about) - model%width(node))) <= near*model%width(node)
    end function has_known_error
 
-   !> See distance_to_zero; with a known discretisation error, the edge of its discrete solution.
-   real(wp) function refined_distance(samples) result(distance)
+   !> Where straightened tractions vanish, in intervals outwards from the outermost node, and the uncertainty of that, intervals.
+   !> `solved`: by the discrete solution, where the discretisation error is known, and not as the zero of nearly linear values.
+   subroutine find_distance(samples, distance, error, solved)
       type(samples_type), intent(in) :: samples
-      logical :: found
-
-      distance = distance_to_zero(samples, .false.)
-      if (.not. samples%is_regular) return
-      if (samples%is_integral) then
-         call find_graded_distance(samples, distance, found)
-      else
-         call find_solved_distance(samples%traction, samples%power, 0, distance, found)
-      end if
-   end function refined_distance
-
-   !> The same on unequal intervals; `distance` is unchanged if not `found`.
-   subroutine find_graded_distance(samples, distance, found)
-      type(samples_type), intent(in) :: samples
-      real(wp), intent(inout) :: distance
-      logical, intent(out) :: found
-      type(graded_solution_type) :: solution
-      real(wp) :: beyond
-
-      solution = new_graded_solution(samples%width, samples%power)
-      call solution%edge_beyond(samples%traction, samples%beyond, beyond, found)
-      if (found) distance = beyond + 0.5_wp
-   end subroutine find_graded_distance
-
-   !> Uncertainty of the zero of nearly linear values, intervals: the distance of the zeros by nearer and by farther values, which
-   !> is small with a known discretisation error, unless the edge is near another one or a corner.
-   pure real(wp) function uncertainty(samples)
-      type(samples_type), intent(in) :: samples
+      real(wp), intent(out) :: distance, error
+      logical, intent(out) :: solved
       !> By the largest of unequal intervals: their discretisation error moves the edge (docs/verification.md).
       real(wp), parameter :: by_largest = 0.005_wp
       !> Beyond it the next node would be in contact: the traction does not vanish as a root.
@@ -662,26 +635,49 @@ contains
       !> The errors of two fits are in proportion to the products of the distances of their nodes from the edge: that of the
       !> outermost three, the first at the distance d, is d/3 of the difference from that of the second to fourth, or more.
       real(wp), parameter :: of_difference = 0.4_wp, least_distance = 0.5_wp
+      real(wp) :: farther
+      logical :: found
+
+      solved = .false.
+      if (.not. samples%is_regular) then
+         error = uncertainty_of_zero(samples)
+      else if (samples%is_integral) then
+         error = least_error + by_largest*maxval(samples%width)**2/sum(samples%width)
+         call find_graded_distance(samples, distance, solved)
+      else
+         error = error_if_unknown
+         call find_solved_distance(samples%traction, samples%power, 0, distance, solved)
+         call find_solved_distance(samples%traction, samples%power, 1, farther, found)
+         if (solved .and. found .and. distance < farthest) &
+            error = min(max(least_error, of_difference*max(distance, least_distance)*abs(farther - distance)), error_if_unknown)
+      end if
+      if (.not. solved) distance = distance_to_zero(samples, .false.)
+   end subroutine find_distance
+
+   !> The distance by the discrete solution of unequal intervals, if `found`.
+   subroutine find_graded_distance(samples, distance, found)
+      type(samples_type), intent(in) :: samples
+      real(wp), intent(out) :: distance
+      logical, intent(out) :: found
+      type(graded_solution_type) :: solution
+
+      solution = new_graded_solution(samples%width, samples%power)
+      call solution%edge_beyond(samples%traction, samples%beyond, distance, found)
+      distance = distance + 0.5_wp
+   end subroutine find_graded_distance
+
+   !> Uncertainty of the zero of nearly linear values, intervals: the distance of the zeros by nearer and by farther values.
+   pure real(wp) function uncertainty_of_zero(samples) result(uncertainty)
+      type(samples_type), intent(in) :: samples
       real(wp) :: near, farther
       logical :: found(2)
 
-      uncertainty = least_error
-      if (samples%is_integral) uncertainty = uncertainty + by_largest*maxval(samples%width)**2/sum(samples%width)
-      if (samples%is_regular) then
-         if (samples%is_integral) return
-         uncertainty = error_if_unknown
-         call find_solved_distance(samples%traction, samples%power, 0, near, found(1))
-         call find_solved_distance(samples%traction, samples%power, 1, farther, found(2))
-         if (all(found) .and. near < farthest) &
-            uncertainty = min(max(least_error, of_difference*max(near, least_distance)*abs(farther - near)), error_if_unknown)
-         return
-      end if
       uncertainty = error_if_unknown
       if (samples%number < most_samples) return
       call find_zero_of_three(samples%inwards(1:3), samples%value(1:3), near, found(1))
       call find_zero_of_three(samples%inwards(2:6:2), samples%value(2:6:2), farther, found(2))
       if (all(found)) uncertainty = min(max(abs(farther - near), least_error), error_if_unknown)
-   end function uncertainty
+   end function uncertainty_of_zero
 
    !> Zero of nearly linear values, outermost first, in intervals outwards from the outermost node. Used are the second to
    !> fourth node, because the outermost one has the largest discretisation error; the third, fifth and seventh if the third
