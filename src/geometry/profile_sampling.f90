@@ -1,10 +1,10 @@
 !> What the nodes of a mesh miss of a profile that has more points than the mesh has nodes.
 module mfv_profile_sampling
-   use mfv_geometry, only: geometry_type
+   use mfv_geometry, only: geometry_type, interpolation_cubic
    use mfv_kinds, only: pi, wp
    implicit none
    private
-   public :: find_missed, pressure_of_wave, sufficient_interval, negligible_pressure
+   public :: find_missed, pressure_of_wave, largest_jump, sufficient_interval, negligible_pressure
 
    !> Changes of the pressure by what lies between nodes below this fraction of the peak do not matter.
    real(wp), parameter :: negligible_pressure = 0.02_wp
@@ -82,6 +82,28 @@ contains
 
       pressure = pi*modulus*height/width
    end function pressure_of_wave
+
+   !> Largest jump of the slope at points of a profile around `x` that intervals of a `width` do not resolve, lengths; 0 of other
+   !> bodies. Where the slope jumps by J the pressure grows by m J/pi whenever intervals are shorter by a factor e (Johnson 1985,
+   !> section 5.2); piecewise cubics spread J over the distance of the points, and with shorter intervals it matters less, in second
+   !> order.
+   pure real(wp) function largest_jump(body, x, width) result(jump)
+      class(geometry_type), intent(in) :: body
+      real(wp), intent(in) :: x, width
+      real(wp) :: left, right, at_point
+      integer :: k
+
+      jump = 0.0_wp
+      if (.not. body%is_sampled()) return
+      do k = 2, size(body%position) - 1
+         left = body%position(k) - body%position(k - 1)
+         right = body%position(k + 1) - body%position(k)
+         if (body%position(k) < x - max(width, right) .or. body%position(k) > x + max(width, left)) cycle
+         at_point = abs((body%height(k + 1) - body%height(k))/right - (body%height(k) - body%height(k - 1))/left)
+         if (body%interpolation == interpolation_cubic) at_point = at_point*min(1.0_wp, 2.0_wp*width/(left + right))**2
+         jump = max(jump, at_point)
+      end do
+   end function largest_jump
 
    !> Interval, at most `longest`, with which nodes miss nothing of a profile that changes the pressure by a fraction
    !> negligible_pressure of `pressure`, or that is a quarter of the mean spacing of its points; lengths.

@@ -36,7 +36,8 @@ def record_of(made: Problem, seed: int) -> dict[str, Any]:
 
     Fates: refused; judged; too long; ended alike; ends early (only on the problem's own mesh); goes on (only there); no limit (results
     with static and kinetic friction do not converge with the mesh); meshes disagree (the two fine ones); mesh too narrow (the
-    contact becomes four times as wide as a given half-width, which it does sooner with wide intervals).
+    contact becomes four times as wide as a given half-width, which it does sooner with wide intervals); too stiff (on one of the
+    meshes it ends with the message that these bristles are too stiff for it, and how stiff they may be).
     """
     found: dict[str, Any] = {"seed": seed, **describe(made), "fate": "judged", "verdicts": {}, "relations": {}}
     try:
@@ -79,6 +80,8 @@ def _judge(made: Problem, base: mfv.Result, found: dict[str, Any]) -> None:
     found["fine outcomes"] = fine
     if "interrupted" in fine:
         found["fate"] = "too long"
+    elif any("bristles are too stiff" in result.message for result in (base, *truth[:2])):
+        found["fate"] = "too stiff"
     elif fine[0] != fine[1]:
         found["fate"] = "meshes disagree"
     elif base.outcome == "mesh exceeded" and made.has("mesh", "half_width"):

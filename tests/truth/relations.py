@@ -206,8 +206,12 @@ def tolerance_of(problem: Problem) -> float:
     law = problem.one("friction")["law"] if problem.has("friction") else "none"
     if law in ("weakening", "dahl"):
         return OF_LAWS
-    accuracy = problem.one("solver").get("accuracy", 0.0) if problem.has("solver") else 0.0
-    return max(ON_EDGES if problem.has("mesh", "refine") else TOLERANCE, 0.1 * accuracy)
+    return max(ON_EDGES if problem.has("mesh", "refine") else TOLERANCE, 0.1 * accuracy_of(problem))
+
+
+def accuracy_of(problem: Problem) -> float:
+    """The key `accuracy`, zero without it."""
+    return float(problem.one("solver").get("accuracy", 0.0)) if problem.has("solver") else 0.0
 
 
 def relations(problem: Problem, base: mfv.Result, seed: int) -> dict[str, Callable[[], Differences]]:
@@ -226,12 +230,13 @@ def relations(problem: Problem, base: mfv.Result, seed: int) -> dict[str, Callab
         found["order of bodies"] = lambda: compared(base, upside_down(plain).run(), tolerance, exchanged, common=rigid)
     pieces = in_pieces(plain)
     if pieces is not None and not problem.has("mesh", "refine"):
-        found["split steps"] = lambda: without_extremes(compared(base, pieces.run(), tolerance))
+        # Other increments, each with the error that is allowed.
+        allowed = max(tolerance, OVER_ACCURACY * accuracy_of(problem))
+        found["split steps"] = lambda: without_extremes(compared(base, pieces.run(), allowed))
     found["solver"] = lambda: compared(base, with_solver(plain).run(), tolerance)
     events = with_events(plain)
     if events is not None:
-        accuracy = problem.one("solver").get("accuracy", 0.0)
-        found["stepping"] = lambda: _accuracy_differences(base, events.run(), accuracy)
+        found["stepping"] = lambda: _accuracy_differences(base, events.run(), accuracy_of(problem))
     found["Python"] = lambda: compared(base, plain.scene().run(), TOLERANCE)
     found["program"] = lambda: compared(base, by_program(plain), TOLERANCE)
     return found

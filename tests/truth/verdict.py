@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 import mfv
+from mfv.codes import NodeStatus
 
 from .fields import NUMBERS, TIED, WORK
 from .problem import Problem
@@ -30,6 +31,13 @@ WORDS = ("right", "within bars", "flagged", "unknown", "finding")
 GROUPS = ("summary", "observables", "cycles", "patches")
 #: What is not a number of the problem: counts of nodes and of work, numbers of cycles and blocks.
 SKIPPED = WORK | NUMBERS | TIED | {"contact_nodes", "patch", "cycle", "cycles", "block", "friction_work"}
+#: Zones, and gaps between them, narrower than this many intervals of the mesh are not resolved, as the descriptions of the numbers of
+#: zones and patches say: statuses in them by names of numbers, and of edges of the outermost ones.
+NARROW = 2.0
+_ZONES = {
+    r"patches": tuple(status for status in NodeStatus if status != NodeStatus.OPEN),
+    r"stick_(zones|left|right)": (NodeStatus.STICK, NodeStatus.CREEP_RIGHT, NodeStatus.CREEP_LEFT),
+}
 #: At nodes, as their descriptions say: right up to an interval.
 COUNTED = {"observables/largest_pressure_x", "cycles/largest_pressure_x"}
 
@@ -140,6 +148,7 @@ def judge(problem: Problem, base: mfv.Result, truth: Truth) -> dict[str, Verdict
     coarser, finer = quantities(truth.coarser), quantities(truth.finer)
     scales, limit = Scales(truth.finer), max(RIGHT, _accuracy(problem))
     patterns = flagged_quantities(base)
+    narrow = {kind: _differ_by_narrow_zones(base, truth.finer, statuses) for kind, statuses in _ZONES.items()}
     found = {}
     for path, values in quantities(base).items():
         group, name = path.split("/")
@@ -172,7 +181,27 @@ def judge(problem: Problem, base: mfv.Result, truth: Truth) -> dict[str, Verdict
             key=lambda verdict: (WORDS.index(verdict.word), verdict.error),
             default=Verdict("right", 0.0, bar, 0.0, math.nan, math.nan),
         )
+        if found[path].word == "finding" and any(narrow[kind] and re.fullmatch(kind, name) for kind in narrow):
+            found[path] = found[path]._replace(word="unknown" if re.fullmatch(_STICK_POSITION, name) else "right")
     return found
+
+
+def _differ_by_narrow_zones(base: mfv.Result, fine: mfv.Result, statuses: tuple[NodeStatus, ...]) -> bool:
+    """Whether the base has as many zones of these statuses as the truth without some of its narrow zones and gaps."""
+    every, wide = _number_of_zones(fine, statuses), _number_of_zones(fine, statuses, NARROW * float(np.max(base.mesh.width)))
+    return wide != every and min(wide, every) <= _number_of_zones(base, statuses) <= max(wide, every)
+
+
+def _number_of_zones(result: mfv.Result, statuses: tuple[NodeStatus, ...], narrow: float = 0.0) -> int:
+    """Number of runs of nodes with one of these statuses; narrower gaps between them are filled, narrower runs are left out."""
+    inside = np.isin(result.state.status, statuses)
+    for held in (False, True):
+        ends = [0, *(np.flatnonzero(np.diff(inside)) + 1), len(inside)]
+        for first, last in zip(ends[:-1], ends[1:]):
+            bounded = held or 0 < first and last < len(inside)
+            if inside[first] == held and bounded and np.sum(result.mesh.width[first:last]) < narrow:
+                inside[first:last] = not held
+    return int(np.count_nonzero(np.diff(inside, prepend=False) & inside))
 
 
 def closed_or(truth: Truth, path: str, one: float) -> float:

@@ -16,7 +16,7 @@ module mfv_discretisation_error
    use mfv_node_status, only: holds, in_contact
    use mfv_observables
    use mfv_observer, only: observer_type, relay_type
-   use mfv_profile_sampling, only: negligible_pressure
+   use mfv_profile_sampling, only: largest_jump, negligible_pressure
    use mfv_resolution, only: add_unresolved, all_quantities, find_unresolved, is_unresolved, undersampling, unresolved_type
    use mfv_scene, only: scene_type
    use mfv_simulation, only: history_none, mark_reversal, new_simulation, simulation_type, states_steps
@@ -565,12 +565,32 @@ contains
             end if
             call undersampling(simulation, .false., part(1), points)
             call undersampling(simulation, .true., part(2), points)
-            of_behaviour(error_pressure) = max(of_behaviour(error_pressure), maxval(part)*maxval(state%fields%pressure))
+            of_behaviour(error_pressure) = max(of_behaviour(error_pressure), maxval(part)*maxval(state%fields%pressure), &
+                                               pressure_at_jumps(model, state%fields%pressure))
             if (.not. largest > nodal) &
                of_behaviour(error_shear) = room_at_kink(abs(state%fields%shear), holds(state%status))
          end if
       end associate
    end function allowances_of_behaviours
+
+   !> Pressure that jumps of the slopes of profiles add around the largest pressures, force/length^2.
+   pure real(wp) function pressure_at_jumps(model, pressure) result(at_jumps)
+      type(contact_model_type), intent(in) :: model
+      real(wp), intent(in) :: pressure(:)
+      real(wp), parameter :: nearly = 0.9_wp
+      real(wp) :: jump
+      integer :: i
+
+      jump = 0.0_wp
+      if (model%scene%lower%is_sampled() .or. model%scene%upper%is_sampled()) then
+         do i = 1, size(pressure)
+            if (pressure(i) < nearly*maxval(pressure)) cycle
+            jump = max(jump, largest_jump(model%scene%lower, model%x(i), model%width(i)) + &
+                       largest_jump(model%scene%upper, model%x(i), model%width(i)))
+         end do
+      end if
+      at_jumps = model%scene%modulus()*jump/pi
+   end function pressure_at_jumps
 
    !> Larger uncertainties of edges where the exponents of the tractions are less certain (docs/verification.md): of contact with
    !> full coupling, where they depend on the friction, and of stick zones that can have grown. If the contact `has_receded` with

@@ -72,6 +72,7 @@ module mfv_result_fields
    character(*), parameter :: contact_nodes_meaning = 'nodes in contact'
    character(*), parameter :: stick_nodes_meaning = 'stuck nodes'
    character(*), parameter :: between_nodes = ', x, between nodes'
+   character(*), parameter :: narrow = '; those, and gaps between them, narrower than two intervals are not resolved'
    character(*), parameter :: linear_solves_meaning = 'linear solves so far'
 
 contains
@@ -457,7 +458,7 @@ contains
          call list%add('contact_nodes', state%contact_nodes(), contact_nodes_meaning)
          call list%add('stick_nodes', state%stick_nodes(), stick_nodes_meaning)
          call list%add('slip_nodes', state%slip_nodes(), 'slipping nodes')
-         call list%add('patches', [edges%patches], along_nothing, 'contact patches, with open nodes between them')
+         call list%add('patches', [edges%patches], along_nothing, 'contact patches, with open nodes between them'//narrow)
          call list%add('contact_half_width', edges%half_width(), 'length', 'half the length of the contact along the surface, '// &
                        'from edges between nodes; NaN with several patches')
         call list%add('stick_ratio', edges%stick_ratio(), '1', 'length of the stick zones over that of the contact, from edges '// &
@@ -523,7 +524,8 @@ call list%add('contact_right', simulation%contact%model%scene%x_of_arc(patches%r
       call list%add('contact_length', patches%length(), along, 'length', 'length, from its edges between nodes')
       call add_patch_loads(list, simulation, patches)
       if (.not. simulation%contact%model%tangential) return
-      call list%add('stick_zones', [(size(patches(i)%stick), i=1, size(patches))], along, 'number of stick zones in the patch')
+      call list%add('stick_zones', [(size(patches(i)%stick), i=1, size(patches))], along, 'number of stick zones in the '// &
+                    'patch'//narrow)
       call list%add('stick_left', [(outermost(patches(i), .false.), i=1, size(patches))], along, 'length', 'left edge of its '// &
                     'first stick zone'//between_nodes//'; NaN without stick zones')
       call list%add('stick_right', [(outermost(patches(i), .true.), i=1, size(patches))], along, 'length', 'right edge of its '// &
