@@ -37,7 +37,7 @@ module mfv_observables
    character(*), parameter :: over = ' over the last cycle; without cycles: over all rows or steps'
    character(*), parameter :: row_meaning = 'when it occurs: row of &history, turning point of the cycle, or step'
    !> Number and list of the observables.
-   integer, parameter :: observable_count = 69
+   integer, parameter :: observable_count = 73
    type(row_type), parameter :: observables(observable_count) = [ &
                                 row_type('normal_force', 'force/length', error_load, &
                                          'normal force P per unit thickness at the end'), &
@@ -45,6 +45,12 @@ module mfv_observables
                                          'tangential force Q per unit thickness at the end'), &
                                 row_type('approach', 'length', error_smooth, 'approach of the upper body at the end'), &
                                 row_type('shift', 'length', error_smooth, 'shift of the upper body to the right at the end'), &
+                                row_type('moment', 'force', error_load, 'moment on the upper body at the end'), &
+                                row_type('rotation', '1', error_smooth, 'rotation of the upper body at the end, radians'), &
+                                row_type('lower_contraction', 'length^2', error_smooth, &
+                                         'area by which the shear tractions shorten the lower body at the end'), &
+                                row_type('upper_contraction', 'length^2', error_smooth, &
+                                         'area by which the shear tractions shorten the upper body at the end'), &
                                 row_type('dissipation', 'force', error_smooth, &
                                          'energy dissipated so far per unit thickness (with wear: by all cycles)'), &
                                 row_type('contact_half_width', 'length', error_edges, &
@@ -150,7 +156,7 @@ module mfv_observables
 
 contains
 
-   !> Index of an observable; the name must be valid.
+   !> Index of an observable; observable_count + 1 of other names.
    pure integer function observable_place(name) result(place)
       character(*), intent(in) :: name
 
@@ -196,7 +202,7 @@ contains
          call find_patches(model, state, patches)
          edges = outermost_edges(patches)
          do i = 1, motion_count
-            if (motions(i)%optional) cycle
+            if (.not. model%moves(i)) cycle
             call put(values, trim(motions(i)%force_key), state%fields%force(i))
             call put(values, trim(motions(i)%key), state%fields%motion(i))
          end do
@@ -275,13 +281,12 @@ contains
          character(*), intent(in) :: name
          type(extreme_type), intent(in) :: extreme
          character(*), parameter :: suffix(4) = [character(4) :: '', '_x', '_y', '_row']
-         integer :: j, place
+         integer :: j
 
          if (extreme%row == 0) return
          associate (value => [extreme%value, extreme%x, extreme%y, real(extreme%row, wp)])
             do j = 1, size(suffix)
-               place = observable_place(name//trim(suffix(j)))
-               if (place <= observable_count) values(place) = value(j)
+               call put(values, name//trim(suffix(j)), value(j))
             end do
          end associate
       end subroutine put_extreme
@@ -340,13 +345,15 @@ contains
       end associate
    end subroutine add_numbers
 
-   !> Set the observable of a name.
-   subroutine put(values, name, value)
+   !> Set the value of an observable; other names are ignored.
+   pure subroutine put(values, name, value)
       real(wp), intent(inout) :: values(:)
       character(*), intent(in) :: name
       real(wp), intent(in) :: value
+      integer :: place
 
-      values(observable_place(name)) = value
+      place = observable_place(name)
+      if (place <= observable_count) values(place) = value
    end subroutine put
 
 end module mfv_observables

@@ -127,9 +127,9 @@ contains
          named_as = 'tangential_stiffness'
       case ('creepage_number')
          named_as = 'creepage'
-      case ('normal_force')
+      case ('normal_force', 'moment', 'rotation')
          named_as = 'approach'
-      case ('tangential_force', 'shift_drift', 'creepage')
+      case ('tangential_force', 'shift_drift', 'creepage', 'lower_contraction', 'upper_contraction')
          named_as = 'shift'
       case ('worn_area', 'wear_depth')
          named_as = 'dissipation'
