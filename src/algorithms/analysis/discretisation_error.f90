@@ -569,9 +569,35 @@ contains
                                                pressure_at_jumps(model, state%fields%pressure))
             if (.not. largest > nodal) &
                of_behaviour(error_shear) = room_at_kink(abs(state%fields%shear), holds(state%status))
+            of_behaviour(error_shear) = max(of_behaviour(error_shear), change_by_edges(model, state, patches, largest), &
+                                            pressure_at_jumps(model, state%fields%pressure)*largest/maxval(state%fields%pressure))
          end if
       end associate
    end function allowances_of_behaviours
+
+   !> Change of the largest shear, which is `largest`, if the edges of the stick zones lie elsewhere within their uncertainties,
+   !> force/length^2.
+   real(wp) function change_by_edges(model, state, patches, largest) result(change)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      type(patch_type), intent(in) :: patches(:)
+      real(wp), intent(in) :: largest
+      type(patch_type) :: moved
+      real(wp) :: other
+      integer :: i, side
+
+      change = 0.0_wp
+      do side = -1, 1, 2
+         other = 0.0_wp
+         do i = 1, size(patches)
+            moved = patches(i)
+            moved%stick%left = moved%stick%left - side*moved%stick%left_error
+            moved%stick%right = moved%stick%right + side*moved%stick%right_error
+            other = max(other, largest_shear(model, state, moved))
+         end do
+         change = max(change, abs(other - largest))
+      end do
+   end function change_by_edges
 
    !> Pressure that jumps of the slopes of profiles add around the largest pressures, force/length^2.
    pure real(wp) function pressure_at_jumps(model, pressure) result(at_jumps)
