@@ -476,6 +476,7 @@ contains
                call add_coarse_slip(cycle%first_slip, 'first_cycle_dissipation', 1.0_wp)
                call add_coarse_slip(cycle%slip(), 'loss_factor', pi*cycle%force_amplitude()*cycle%shift_amplitude())
             end associate
+            if (model%scene%wear%acts()) call add_to_wear()
          end if
          do i = 1, observable_count
             if (observables(i)%error == error_place .and. .not. ieee_is_nan(values(i))) &
@@ -491,6 +492,17 @@ contains
       end associate
 
    contains
+
+      !> What is worn off has the relative error of the dissipation of the first or the last cycle, whichever is larger.
+      subroutine add_to_wear()
+         integer :: dissipation(2)
+         real(wp) :: part
+
+         dissipation = [observable_place('first_cycle_dissipation'), observable_place('cycle_dissipation')]
+         part = maxval(allowances(dissipation))
+         part = min(part/max(maxval(abs(values(dissipation))), tiny(part)), 1.0_wp)
+         where (observables%name == 'worn_area' .or. observables%name == 'wear_depth') allowances = max(allowances, part*values)
+      end subroutine add_to_wear
 
       !> The error of a dissipation over `unit` (force) by slip zones of few intervals, or within the outermost one at either end,
       !> where the slip is at most of the order of mu p times the interval over the contact modulus.
