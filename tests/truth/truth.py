@@ -48,6 +48,7 @@ def fine_problems(problem: Problem, base: mfv.Result) -> tuple[Problem, Problem]
         made.one("output").update(states="steps", history="steps", error_estimate=False)
         _refine(made, base, number)
         _solve_otherwise(made, number)
+        _fix_cycles(made, base)
         if made.has("wear"):
             made.one("wear").pop("tolerance", None)
             made.one("wear").update(block=1)
@@ -69,6 +70,13 @@ def _refine(made: Problem, base: mfv.Result, number: int) -> None:
         del keys["refine"]
         factor = EQUAL
     keys["nodes"] = factor * nodes + number
+
+
+def _fix_cycles(made: Problem, base: mfv.Result) -> None:
+    """As many cycles as the base has, where they end when they are steady: on another mesh that may be one cycle sooner or later."""
+    with_cycles = [keys for _, keys in made.groups if "cycles" in keys]
+    if len(with_cycles) == 1 and with_cycles[0].pop("steady_tolerance", None) is not None and base.observables.get("cycles", 0) > 0:
+        with_cycles[0]["cycles"] = int(base.observables.cycles)
 
 
 def _solve_otherwise(made: Problem, number: int) -> None:
