@@ -351,22 +351,29 @@ contains
    end function outside_stick_zones
 
    !> Slipping nodes: those outside all stick zones, except within half an interval of an edge if there is another such node
-   !> behind: an edge may be this far inside the last sticking node.
+   !> behind, which is not itself as near to the next edge: an edge may be this far inside the last sticking node.
    pure function slipping_nodes(patch) result(slips)
       type(patch_type), intent(in) :: patch
-      logical :: slips(size(patch%arc))
-      integer :: i, side, beside, behind
+      logical, dimension(size(patch%arc)) :: slips, outside
+      integer :: behind(size(patch%arc)), i, side, beside
 
-      slips = outside_stick_zones(patch)
+      outside = outside_stick_zones(patch)
+      behind = 0
       do i = 1, size(patch%stick)
          do side = 1, 2
             if (.not. patch%stick(i)%rooted(side)) cycle
             beside = merge(count(patch%arc <= patch%stick(i)%edge(1)), count(patch%arc < patch%stick(i)%edge(2)) + 1, side == 1)
-            behind = beside + 2*side - 3
-            if (behind < 1 .or. behind > size(slips)) cycle
-            if (slips(behind) .and. abs(patch%arc(beside) - patch%stick(i)%edge(side)) < 0.5_wp*patch%width(beside)) &
-               slips(beside) = .false.
+            associate (next => beside + 2*side - 3)
+               if (next < 1 .or. next > size(outside)) cycle
+               if (outside(next) .and. abs(patch%arc(beside) - patch%stick(i)%edge(side)) < 0.5_wp*patch%width(beside)) &
+                  behind(beside) = next
+            end associate
          end do
+      end do
+      slips = outside
+      do i = 1, size(slips)
+         if (behind(i) == 0) cycle
+         slips(i) = behind(behind(i)) == i
       end do
    end function slipping_nodes
 
