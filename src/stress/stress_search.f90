@@ -153,7 +153,8 @@ contains
       integer :: i
 
       allocate (inner, source=merged(interior%zone_edges(most_between=16), interior%kinks()))
-      allocate (inside, source=pack(inner, [.true., inner(2:) > inner(:size(inner) - 1)]))
+      ! Two points that differ by round-off would leave one side of a cusp out of the search.
+      allocate (inside, source=pack(inner, [.true., inner(2:) - inner(:size(inner) - 1) > certified*interior%half_width()]))
       nearest = 1.0e-3_wp*interior%half_width()
       farthest = 4.0_wp*interior%half_width()
       if (interior%body%deforms_as_circle()) farthest = max(farthest, pi*interior%body%radius)

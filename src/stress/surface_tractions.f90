@@ -272,26 +272,35 @@ contains
       root_shift = min(max(atan(product)/pi, -most), most)
    end function root_shift
 
-   !> The stick zones of a patch that contain nodes; `rooted` on sides with slipping nodes.
+   !> The stick zones of a patch that contain nodes, those without a node between them as one; `rooted` on sides with slipping nodes.
    function stick_zones(patch, zones) result(stick)
       type(patch_type), intent(in) :: patch
       type(zone_list_type), intent(in) :: zones
       type(zone_type), allocatable :: stick(:)
       type(zone_type) :: zone
       real(wp) :: before, next
-      integer :: i
+      integer :: i, last
 
       allocate (stick(0))
-      before = -huge(1.0_wp)
       do i = 1, size(zones%stick, 2)
          zone%edge = [max(zones%stick(1, i), patch%contact%edge(1)), min(zones%stick(2, i), patch%contact%edge(2))]
          if (.not. any(zone%contains_place(patch%arc))) cycle
-         next = huge(1.0_wp)
-         if (i < size(zones%stick, 2)) next = zones%stick(1, i + 1)
-         zone%rooted(1) = any(patch%arc > before .and. patch%arc <= zone%edge(1))
-         zone%rooted(2) = any(patch%arc >= zone%edge(2) .and. patch%arc < next)
+         last = size(stick)
+         if (last > 0) then
+            if (.not. any(patch%arc >= stick(last)%edge(2) .and. patch%arc <= zone%edge(1))) then
+               stick(last)%edge(2) = zone%edge(2)
+               cycle
+            end if
+         end if
          stick = [stick, zone]
-         before = zone%edge(2)
+      end do
+      do i = 1, size(stick)
+         before = -huge(1.0_wp)
+         next = huge(1.0_wp)
+         if (i > 1) before = stick(i - 1)%edge(2)
+         if (i < size(stick)) next = stick(i + 1)%edge(1)
+         stick(i)%rooted = [any(patch%arc > before .and. patch%arc <= stick(i)%edge(1)), &
+                            any(patch%arc >= stick(i)%edge(2) .and. patch%arc < next)]
       end do
    end function stick_zones
 
