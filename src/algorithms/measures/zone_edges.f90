@@ -411,8 +411,6 @@ contains
          real(wp), intent(inout) :: edge, error
          !> In intervals; unequal ones have mean slips.
          real(wp), parameter :: agreement(2) = [0.35_wp, 1.0_wp], straight = 0.3_wp
-         !> Steps in which older edges are those of the present reversals: one shear, or the two ends of a cycle.
-         integer, parameter :: alike = 2
          integer :: node, i
          real(wp) :: by_slip, values(0:2)
 
@@ -426,7 +424,7 @@ contains
          by_slip = edge_by_slip(model, state, next, side, edge)
          if (abs(by_slip - edge) <= agreement(merge(2, 1, samples%is_integral))*model%width(last)) then
             ! An older edge in the same interval is not seen in the tractions.
-            if (count(model%scene%steps%control(motion_shift) /= control_keep) > alike) error = max(error, abs(by_slip - edge))
+            if (has_older_edges(model)) error = max(error, abs(by_slip - edge))
             return
          end if
          error = max(error, min(abs(by_slip - edge), error_if_unknown*model%width(last)))
@@ -440,6 +438,27 @@ contains
          at_its_limit = lack(node) <= significant*model%static_friction(node)*state%fields%pressure(node)
       end function at_its_limit
    end subroutine find_stick_edge
+
+   !> Whether stick zones can have older edges than those of one shear, or of the two ends of a cycle that are alike.
+   pure logical function has_older_edges(model)
+      type(contact_model_type), intent(in) :: model
+      real(wp) :: target(2)
+      integer :: i, number
+
+      number = 0
+      has_older_edges = .true.
+      if (model%scene%wear%acts()) return
+      do i = 1, size(model%scene%steps)
+         associate (step => model%scene%steps(i))
+            if (step%control(motion_shift) == control_keep) cycle
+            if (number == 2 .or. allocated(step%path)) return
+            number = number + 1
+            target(number) = step%target(motion_shift)
+         end associate
+      end do
+      has_older_edges = .false.
+      if (number == 2) has_older_edges = abs(sum(target)) > visible*maxval(abs(target))
+   end function has_older_edges
 
    !> The outermost values of a traction in a zone from node `outermost` to node `other`; shape of the traction (nodes).
    pure type(samples_type) function sampled(model, traction, outermost, other) result(samples)
