@@ -272,7 +272,8 @@ contains
       root_shift = min(max(atan(product)/pi, -most), most)
    end function root_shift
 
-   !> The stick zones of a patch that contain nodes, those without a node between them as one; `rooted` on sides with slipping nodes.
+   !> The stick zones of a patch that contain nodes, those without a node between them as one; `rooted` on sides with slipping
+   !> nodes.
    function stick_zones(patch, zones) result(stick)
       type(patch_type), intent(in) :: patch
       type(zone_list_type), intent(in) :: zones

@@ -193,12 +193,12 @@ def _differ_by_narrow_zones(base: mfv.Result, fine: mfv.Result, statuses: tuple[
 
 
 def _number_of_zones(result: mfv.Result, statuses: tuple[NodeStatus, ...], narrow: float = 0.0) -> int:
-    """Number of runs of nodes with one of these statuses; narrower gaps between them are filled, narrower runs are left out."""
+    """Number of runs of nodes with one of these statuses; narrower gaps between them are filled, narrower runs omitted."""
     inside = np.isin(result.state.status, statuses)
     for held in (False, True):
         ends = [0, *(np.flatnonzero(np.diff(inside)) + 1), len(inside)]
         for first, last in zip(ends[:-1], ends[1:]):
-            bounded = held or 0 < first and last < len(inside)
+            bounded = held or (first > 0 and last < len(inside))
             if inside[first] == held and bounded and np.sum(result.mesh.width[first:last]) < narrow:
                 inside[first:last] = not held
     return int(np.count_nonzero(np.diff(inside, prepend=False) & inside))
