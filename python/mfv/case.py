@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Callable, NoReturn
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _html, errors
+from . import _html, errors, inputs
 from ._library import (
     ALONG,
     CONTROLS,
@@ -36,7 +36,7 @@ from ._library import (
 from ._observer import Observer
 from .loads import MOTIONS, Derivative, Loads, Progress, Targets
 from .result import Field, Result, Values
-from .scene import Scene, created
+from .scene import Output, Scene, created
 
 if TYPE_CHECKING:
     from typing_extensions import Self, Unpack
@@ -556,6 +556,30 @@ class Case:
         buffer = text_buffer()
         library().mfv_message(self._handle, buffer, len(buffer))
         return text_of(buffer)
+
+
+def case_of(result: Result, *, keeping_states: bool = False) -> Case:
+    """The case of a result, before its load history. `keeping_states`: save states even if the result has none, and those of all
+    turning points of a load history.
+
+    Raises ValueError if the scene had arrays in memory and the result is from a file, which does not contain them; InputError.
+    """
+    if result._source is not None:
+        scene = copy.deepcopy(result._source)
+        if keeping_states and scene.history is not None:
+            scene.output = scene.output or Output()
+            scene.output.states = "reversals"
+        elif keeping_states and scene.output is not None and scene.output.states == "none":
+            scene.output.states = "steps"
+        return Case(scene)
+    text = result.attributes["input"]
+    if missing := inputs.arrays_in_memory(text):
+        raise ValueError(
+            f"arrays of the scene ({', '.join(missing)}) were given in memory and are not in the file; "
+            "use the result object of the run for stresses and intermediate states"
+        )
+    name = os.path.join(result.attributes["working_directory"], result.attributes["input_file"])
+    return Case.from_text(inputs.keeping_states(text) if keeping_states else text, name)
 
 
 def _checked_state(state: object) -> State:

@@ -1,16 +1,10 @@
-"""The input of a result, a namelist text: its keys and values, and its case."""
+"""The input of a result, a namelist text: its keys and values."""
 
 from __future__ import annotations
 
-import copy
-import os
 import re
 from collections import Counter
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from .case import Case
-    from .result import Result
+from typing import Any
 
 #: Groups that may occur several times; their keys are named group(number)%key, as in a study.
 REPEATED = ("body", "step")
@@ -46,36 +40,16 @@ def groups(text: str) -> list[tuple[str, dict[str, Any]]]:
     ]
 
 
-def case_of(result: Result, *, keeping_states: bool = False) -> Case:
-    """The case of a result, before its load history. `keeping_states`: save states even if the result has none, and those of all
-    turning points of a load history.
+def arrays_in_memory(text: str) -> list[str]:
+    """Names of the arrays of a scene that were given in memory and are not in its namelist text."""
+    return list(dict.fromkeys(_IN_MEMORY.findall(text)))
 
-    Raises ValueError if the scene had arrays in memory and the result is from a file, which does not contain them; InputError.
-    """
-    from .case import Case  # here, since they import this module
-    from .scene import Output
 
-    if result._source is not None:
-        scene = copy.deepcopy(result._source)
-        if keeping_states and scene.history is not None:
-            scene.output = scene.output or Output()
-            scene.output.states = "reversals"
-        elif keeping_states and scene.output is not None and scene.output.states == "none":
-            scene.output.states = "steps"
-        return Case(scene)
-    text = result.attributes["input"]
-    in_memory = dict.fromkeys(_IN_MEMORY.findall(text))
-    if in_memory:
-        raise ValueError(
-            f"arrays of the scene ({', '.join(in_memory)}) were given in memory and are not in the file; "
-            "use the result object of the run for stresses and intermediate states"
-        )
-    if keeping_states and any(group == "history" for group, _ in groups(text)):
-        text = _with_all_states(text)
-    elif keeping_states:
-        text = re.sub(r"(\bstates\s*=\s*)(['\"])none\2", r"\1\2steps\2", text, flags=re.IGNORECASE)
-    name = os.path.join(result.attributes["working_directory"], result.attributes["input_file"])
-    return Case.from_text(text, name)
+def keeping_states(text: str) -> str:
+    """A namelist text whose run saves states, too, if it saves none: those of all turning points of a load history."""
+    if any(group == "history" for group, _ in groups(text)):
+        return _with_all_states(text)
+    return re.sub(r"(\bstates\s*=\s*)(['\"])none\2", r"\1\2steps\2", text, flags=re.IGNORECASE)
 
 
 def _with_all_states(text: str) -> str:

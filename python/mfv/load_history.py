@@ -8,9 +8,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .case import case_of
 from .compare import compare
 from .errors import MfvError
-from .inputs import case_of, groups
+from .inputs import groups
 from .loads import MOTIONS
 from .result import Field, Group, Result, is_last
 

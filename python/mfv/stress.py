@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._library import real_pointer
-from .inputs import case_of, keys
+from .case import case_of
+from .inputs import keys
 from .result import Result
 
 #: The stresses at a point, in the order of the header: in Cartesian components, across the plane, principal ones in the
