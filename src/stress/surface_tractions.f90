@@ -13,10 +13,13 @@ module mfv_surface_tractions
    use mfv_kinds, only: pi, wp
    use mfv_lapack, only: dgesv
    use mfv_quadrature, only: gauss_points
-   use mfv_tolerances, only: certified, visible
+   use mfv_tolerances, only: certified, significant, visible
    implicit none
    private
    public :: zone_list_type, traction_elements_type, find_traction_elements, merged, root_shift
+
+   !> Within half an interval, and not at its end, where edges lie that cannot be located: round-off must not decide.
+   real(wp), parameter :: half_interval = 0.5_wp*(1.0_wp - significant)
 
    !> Edges, arc lengths, left one first; shapes (2, zones). At a sharp edge the pressure does not vanish: the end of a body's
    !> surface. `beta`: Dundurs' parameter, 0 without coupling. `turn`: angle by which the normals turn per arc length, radians per
@@ -375,7 +378,7 @@ contains
             beside = merge(count(patch%arc <= patch%stick(i)%edge(1)), count(patch%arc < patch%stick(i)%edge(2)) + 1, side == 1)
             associate (next => beside + 2*side - 3)
                if (next < 1 .or. next > size(outside)) cycle
-               if (outside(next) .and. abs(patch%arc(beside) - patch%stick(i)%edge(side)) < 0.5_wp*patch%width(beside)) &
+               if (outside(next) .and. abs(patch%arc(beside) - patch%stick(i)%edge(side)) < half_interval*patch%width(beside)) &
                   behind(beside) = next
             end associate
          end do
@@ -401,7 +404,7 @@ contains
       do side = 1, 2
          if (.not. (zone%rooted(side) .and. zone%known(side))) cycle
          nodes = pack([(i, i=1, size(values))], zone%contains_place(patch%arc) .or. &
-                      (abs(patch%arc - zone%edge(side)) < 0.5_wp*patch%width .and. abs(values) > patch%nothing))
+                      (abs(patch%arc - zone%edge(side)) < half_interval*patch%width .and. abs(values) > patch%nothing))
          if (side == 2) nodes = nodes(size(nodes):1:-1)
          distance = (2*side - 3)*(zone%edge(side) - patch%arc(nodes(1)))
          if (patch%graded) then
