@@ -56,6 +56,14 @@ class Problem:
     def has(self, name: str, key: str | None = None) -> bool:
         return any(group == name and (key is None or key in keys) for group, keys in self.groups)
 
+    def accuracy(self) -> float:
+        """The error of large increments that it allows, zero without the key."""
+        return float(self.one("solver").get("accuracy", 0.0)) if self.has("solver") else 0.0
+
+    def wear_tolerance(self) -> float:
+        """The error of blocks of cycles that it allows, zero without wear."""
+        return float(self.one("wear").get("tolerance", 0.05)) if self.has("wear") else 0.0
+
     def loads(self) -> Iterator[Keys]:
         """The keys of every step, and the columns of the load history, whether they are in the namelist or in a file."""
         for group, keys in self.groups:

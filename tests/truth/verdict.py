@@ -146,7 +146,7 @@ def public_name(path: str) -> str:
 def judge(problem: Problem, base: mfv.Result, truth: Truth) -> dict[str, Verdict]:
     """The verdict of every quantity of a complete run."""
     coarser, finer = quantities(truth.coarser), quantities(truth.finer)
-    scales, limit = Scales(truth.finer), max(RIGHT, _accuracy(problem))
+    scales, limit = Scales(truth.finer), max(RIGHT, problem.accuracy(), problem.wear_tolerance())
     patterns = flagged_quantities(base)
     narrow = {kind: _differ_by_narrow_zones(base, truth.finer, statuses) for kind, statuses in _ZONES.items()}
     found = {}
@@ -207,12 +207,6 @@ def _number_of_zones(result: mfv.Result, statuses: tuple[NodeStatus, ...], narro
 def closed_or(truth: Truth, path: str, one: float) -> float:
     """The value on the coarser mesh of the truth or, if there is one, the closed form, which it has to agree with."""
     return truth.closed.get(path, one)
-
-
-def _accuracy(problem: Problem) -> float:
-    """The error that the problem allows: by large increments, or by blocks of cycles of wear."""
-    accuracy = float(problem.one("solver").get("accuracy", 0.0)) if problem.has("solver") else 0.0
-    return max(accuracy, float(problem.one("wear").get("tolerance", 0.05)) if problem.has("wear") else 0.0)
 
 
 def _aligned(group: str, base: mfv.Result, fine: mfv.Result, values: np.ndarray | None) -> np.ndarray | None:
