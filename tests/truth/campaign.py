@@ -135,7 +135,7 @@ def _row(title: str, count: Counter[str]) -> str:
 
 
 def table(records: list[dict[str, Any]]) -> str:
-    """Verdicts by family of quantities, bars by kind of mesh, relations, and fates, as Markdown."""
+    """Verdicts by family of quantities, bars by kind of mesh, relations, fates, and the scenes of the findings, as Markdown."""
     counts: dict[str, Counter[str]] = {name: Counter() for name in ("all", "ordinary scenes", *FAMILIES, "others")}
     bars: dict[str, Counter[bool]] = defaultdict(Counter)
     related: dict[str, Counter[bool]] = defaultdict(Counter)
@@ -158,4 +158,10 @@ def table(records: list[dict[str, Any]]) -> str:
     lines += [f"| {name} | {both[True] + both[False]} | {both[True]} |" for name, both in sorted(related.items())]
     fates = Counter(one["fate"] for one in records)
     lines += ["", "| fate | scenes |", "| --- | --- |", *(f"| {fate} | {number} |" for fate, number in fates.most_common())]
+    found: dict[str, set[int]] = defaultdict(set)
+    for one in records:
+        for name in findings(one):
+            found[family(name) if name in one["verdicts"] else name.split(":")[0]].add(one["seed"])
+    lines += ["", "| findings | scenes, by seed |", "| --- | --- |"]
+    lines += [f"| {name} | {', '.join(map(str, sorted(seeds)))} |" for name, seeds in sorted(found.items())]
     return "\n".join(lines) + "\n"
