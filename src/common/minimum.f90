@@ -25,10 +25,10 @@ module mfv_minimum
    end interface
 
    !> Parameter of the GSL callback.
-   type :: context_type
+   type :: objective_context_type
       class(objective_type), pointer :: objective
       integer :: variables = 0
-   end type context_type
+   end type objective_context_type
 
 contains
 
@@ -41,7 +41,7 @@ contains
       real(wp), intent(out) :: value
       integer, parameter :: most_iterations = 400
       real(wp), parameter :: smallest = 1.0e-8_wp
-      type(context_type), target :: context
+      type(objective_context_type), target :: context
       type(gsl_multimin_function) :: gsl_f
       type(c_ptr) :: solver, start, steps
       real(wp) :: first_size
@@ -93,7 +93,7 @@ contains
    function evaluate_objective(x, params) result(value) bind(C, name='')
       type(c_ptr), value :: x, params
       real(c_double) :: value
-      type(context_type), pointer :: context
+      type(objective_context_type), pointer :: context
 
       call c_f_pointer(params, context)
       value = context%objective%value(values_of(x, context%variables))

@@ -18,10 +18,10 @@ module mfv_numerics
    end interface
 
    !> Parameter of the GSL callback.
-   type :: context_type
+   type :: integrand_context_type
       procedure(parametric_function), pointer, nopass :: f
       real(wp), allocatable :: parameters(:)
-   end type context_type
+   end type integrand_context_type
 
 contains
 
@@ -32,7 +32,7 @@ contains
       real(wp), intent(in) :: parameters(:), lower, upper
       real(wp) :: root
       integer, parameter :: most_iterations = 200
-      type(context_type), target :: context
+      type(integrand_context_type), target :: context
       type(gsl_function) :: gsl_f
       type(c_ptr) :: solver
       real(wp) :: at_lower, at_upper, previous
@@ -80,7 +80,7 @@ contains
       real(c_double), value :: x
       type(c_ptr), value :: params
       real(c_double) :: value
-      type(context_type), pointer :: context
+      type(integrand_context_type), pointer :: context
 
       call c_f_pointer(params, context)
       value = context%f(x, context%parameters)

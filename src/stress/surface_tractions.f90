@@ -44,36 +44,36 @@ module mfv_surface_tractions
    end type traction_elements_type
 
    !> A piecewise linear function.
-   type :: table_type
+   type :: interpolant_type
       real(wp), allocatable :: x(:), value(:)
       !> Whether it is extrapolated from points as far apart as the distance from them, not from neighbours: on unequal intervals.
       logical :: far_apart = .false.
    contains
       procedure :: at
       procedure :: continued
-   end type table_type
+   end type interpolant_type
 
    !> A zone: the sides (left, right) where the function vanishes as a root, the exponents there, and the function divided by
    !> these roots.
-   type :: zone_type
+   type :: fitted_zone_type
       real(wp) :: edge(2) = 0.0_wp, power(2) = 0.5_wp
       logical :: rooted(2) = .true.
       !> Whether the discretisation error at the edges is known.
       logical :: known(2) = .false.
-      type(table_type) :: rest
+      type(interpolant_type) :: rest
    contains
       procedure :: contains_place
       procedure :: roots
-   end type zone_type
+   end type fitted_zone_type
 
    !> One contact zone: the pressure; `limit` tau/p in slip zones, linear between them; in stick zones the remaining friction,
    !> over the pressure where a stick zone ends with the contact. If nodes without pressure have shear, `shear` instead of
    !> these.
-   type :: patch_type
+   type :: fitted_patch_type
       real(wp), allocatable :: arc(:), width(:), pressure(:), shear(:)
-      type(zone_type) :: contact
-      type(zone_type), allocatable :: stick(:)
-      type(table_type) :: limit, shear_rest
+      type(fitted_zone_type) :: contact
+      type(fitted_zone_type), allocatable :: stick(:)
+      type(interpolant_type) :: limit, shear_rest
       logical :: has_ratio = .true.
       !> See zone_list_type.
       real(wp) :: turn = 0.0_wp
@@ -83,7 +83,7 @@ module mfv_surface_tractions
       real(wp) :: nothing = 0.0_wp
    contains
       procedure :: tractions
-   end type patch_type
+   end type fitted_patch_type
 
 contains
 
@@ -94,7 +94,7 @@ contains
       real(wp), intent(in) :: arc(:), width(:), pressure(:), shear(:), longest
       type(zone_list_type), intent(in) :: zones
       type(traction_elements_type), intent(out) :: elements
-      type(patch_type) :: patch
+      type(fitted_patch_type) :: patch
       real(wp), allocatable :: edges(:, :)
       logical, allocatable :: sharp(:, :)
       integer, allocatable :: owner(:)
@@ -123,7 +123,7 @@ contains
          patch%width = width(nodes)
          patch%pressure = pressure(nodes)
          patch%shear = shear(nodes)
-         patch%contact = zone_type(edge=edges(:, i), rooted=.not. sharp(:, i), rest=table_type())
+         patch%contact = fitted_zone_type(edge=edges(:, i), rooted=.not. sharp(:, i), rest=interpolant_type())
          patch%counted = i > size(zones%contact, 2)
          call fit_patch(patch, zones)
          number = number + 1
@@ -171,7 +171,7 @@ contains
 
    !> Fit a patch to its nodes and edges.
    subroutine fit_patch(patch, zones)
-      type(patch_type), intent(inout) :: patch
+      type(fitted_patch_type), intent(inout) :: patch
       type(zone_list_type), intent(in) :: zones
       real(wp) :: values(size(patch%arc))
       integer :: i
@@ -202,7 +202,7 @@ contains
 
    !> Contact edges between the nodes, if the discretisation error is known.
    subroutine locate_edges(patch)
-      type(patch_type), intent(inout) :: patch
+      type(fitted_patch_type), intent(inout) :: patch
       real(wp) :: distance
       integer :: nodes(size(patch%arc)), i, n, side
       logical :: found
@@ -220,7 +220,7 @@ contains
    !> Find edges with a known discretisation error: of contact zones with enough slipping nodes, and of stick zones without
    !> coupling (`beta` 0).
    subroutine find_known(patch, beta)
-      type(patch_type), intent(inout) :: patch
+      type(fitted_patch_type), intent(inout) :: patch
       real(wp), intent(in) :: beta
       integer, parameter :: fewest_nodes = 5, fewest_slipping = 4
       logical :: slips(size(patch%arc))
@@ -243,7 +243,7 @@ contains
 
    !> Exponents at edges next to slipping nodes: see mfv_zone_edges.
    subroutine find_powers(patch, beta)
-      type(patch_type), intent(inout) :: patch
+      type(fitted_patch_type), intent(inout) :: patch
       real(wp), intent(in) :: beta
       integer :: i, side, outermost
 
@@ -278,10 +278,10 @@ contains
    !> The stick zones of a patch that contain nodes, those without a node between them as one; `rooted` on sides with slipping
    !> nodes.
    function stick_zones(patch, zones) result(stick)
-      type(patch_type), intent(in) :: patch
+      type(fitted_patch_type), intent(in) :: patch
       type(zone_list_type), intent(in) :: zones
-      type(zone_type), allocatable :: stick(:)
-      type(zone_type) :: zone
+      type(fitted_zone_type), allocatable :: stick(:)
+      type(fitted_zone_type) :: zone
       real(wp) :: before, next
       integer :: i, last
 
@@ -310,7 +310,7 @@ contains
 
    !> tau/p of the slipping nodes, also at the rooted edges of the adjacent stick zones.
    subroutine find_limit(patch)
-      type(patch_type), intent(inout) :: patch
+      type(fitted_patch_type), intent(inout) :: patch
       logical :: slips(size(patch%arc))
       real(wp), dimension(size(patch%arc) + 2*size(patch%stick)) :: x, value
       integer :: i, node, number
@@ -327,7 +327,7 @@ contains
          end associate
       end do
       call add_nodes_before(huge(1.0_wp))
-      patch%limit = table_type()
+      patch%limit = interpolant_type()
       patch%limit%x = x(:number)
       patch%limit%value = value(:number)
 
@@ -356,7 +356,7 @@ contains
 
    !> Nodes outside all stick zones.
    pure function outside_stick_zones(patch) result(outside)
-      type(patch_type), intent(in) :: patch
+      type(fitted_patch_type), intent(in) :: patch
       logical :: outside(size(patch%arc))
       integer :: i
 
@@ -366,7 +366,7 @@ contains
    !> Slipping nodes: those outside all stick zones, except within half an interval of an edge if there is another such node
    !> behind, which is not itself as near to the next edge: an edge may be this far inside the last sticking node.
    pure function slipping_nodes(patch) result(slips)
-      type(patch_type), intent(in) :: patch
+      type(fitted_patch_type), intent(in) :: patch
       logical, dimension(size(patch%arc)) :: slips, outside
       integer :: behind(size(patch%arc)), i, side, beside
 
@@ -393,8 +393,8 @@ contains
    !> Correct the `values` at the nodes of a zone for the discretisation error, next to edges where it is known. The outermost
    !> node may be slightly outside its edge.
    subroutine correct_error(patch, zone, values)
-      type(patch_type), intent(in) :: patch
-      type(zone_type), intent(in) :: zone
+      type(fitted_patch_type), intent(in) :: patch
+      type(fitted_zone_type), intent(in) :: zone
       real(wp), intent(inout) :: values(:)
       integer, allocatable :: nodes(:)
       type(graded_solution_type) :: solution
@@ -423,8 +423,8 @@ contains
    !> the nodes have a maximum near the edge, as on a rounded punch or beside the tip of a wedge. On unequal intervals, of which
    !> many are between, they are two, or one with a known discretisation error and the power 1/2.
    pure function skipped_intervals(patch, zone, values) result(skipped)
-      type(patch_type), intent(in) :: patch
-      type(zone_type), intent(in) :: zone
+      type(fitted_patch_type), intent(in) :: patch
+      type(fitted_zone_type), intent(in) :: zone
       real(wp), intent(in) :: values(:)
       integer :: skipped(2), nodes(size(values)), i, n, side
       real(wp) :: reach, nothing
@@ -461,9 +461,9 @@ contains
    !> `values` at the nodes of a patch over the roots of a zone, as a table of its nodes, except those nearer to a rooted edge
    !> than skipped_intervals, if any remain.
    subroutine fit_zone(patch, values, zone)
-      type(patch_type), intent(in) :: patch
+      type(fitted_patch_type), intent(in) :: patch
       real(wp), intent(in) :: values(:)
-      type(zone_type), intent(inout) :: zone
+      type(fitted_zone_type), intent(inout) :: zone
       logical :: used(size(values))
       integer :: intervals(2), i
 
@@ -505,7 +505,7 @@ contains
 
    !> Whether a place is inside a zone.
    elemental logical function contains_place(self, x)
-      class(zone_type), intent(in) :: self
+      class(fitted_zone_type), intent(in) :: self
       real(wp), intent(in) :: x
 
       contains_place = x > self%edge(1) .and. x < self%edge(2)
@@ -513,7 +513,7 @@ contains
 
    !> Roots of the distances from the rooted edges, over the length of the zone; 0 outside.
    elemental real(wp) function roots(self, x)
-      class(zone_type), intent(in) :: self
+      class(fitted_zone_type), intent(in) :: self
       real(wp), intent(in) :: x
 
       roots = 1.0_wp
@@ -537,7 +537,7 @@ contains
    !> Set the table of a zone so that the means over intervals of a `width` about its points are `values`, by iteration from the
    !> values in the middle.
    subroutine fit_means(zone, width, values)
-      type(zone_type), intent(inout) :: zone
+      type(fitted_zone_type), intent(inout) :: zone
       real(wp), intent(in) :: width(:), values(:)
       integer, parameter :: points = 4, iterations = 4
       real(wp) :: t(points), weight(points), x(points, size(values)), traction(points, size(values))
@@ -555,7 +555,7 @@ contains
 
    !> Linear interpolation in a table at ascending `x`, constant outside; 0 for an empty one.
    pure function at(self, x) result(values)
-      class(table_type), intent(in) :: self
+      class(interpolant_type), intent(in) :: self
       real(wp), intent(in) :: x(:)
       real(wp) :: values(size(x))
       integer :: before(size(x)), i, n
@@ -575,7 +575,7 @@ contains
 
    !> The same with linear extrapolation, limited to between half and twice the last value.
    pure function continued(self, x) result(values)
-      class(table_type), intent(in) :: self
+      class(interpolant_type), intent(in) :: self
       real(wp), intent(in) :: x(:)
       real(wp) :: values(size(x)), bounds(2)
       integer :: i, last, other, inwards, n
@@ -600,7 +600,7 @@ contains
 
    !> The straight line through the points i and j of a table.
    pure real(wp) function along(self, i, j, x)
-      type(table_type), intent(in) :: self
+      type(interpolant_type), intent(in) :: self
       integer, intent(in) :: i, j
       real(wp), intent(in) :: x
 
@@ -624,7 +624,7 @@ contains
 
    !> p + i tau of a patch at ascending places.
    pure function tractions(self, x)
-      class(patch_type), intent(in) :: self
+      class(fitted_patch_type), intent(in) :: self
       real(wp), intent(in) :: x(:)
       complex(wp) :: tractions(size(x))
       real(wp) :: pressure(size(x)), shear(size(x))
@@ -653,7 +653,7 @@ contains
 
    !> Find the elements of a patch.
    subroutine find_elements(patch, longest, elements)
-      type(patch_type), intent(in) :: patch
+      type(fitted_patch_type), intent(in) :: patch
       real(wp), intent(in) :: longest
       type(traction_elements_type), intent(inout) :: elements
       real(wp), allocatable :: knots(:)
@@ -682,7 +682,7 @@ contains
    !> distance from the next rooted edge or than `longest`: sigma_xx on the surface has a kink at each end. Symmetric with respect
    !> to left and right.
    function knots_of(patch, longest) result(knots)
-      type(patch_type), intent(in) :: patch
+      type(fitted_patch_type), intent(in) :: patch
       real(wp), intent(in) :: longest
       real(wp), allocatable :: knots(:)
       real(wp), allocatable :: roots(:), points(:)
@@ -730,7 +730,7 @@ contains
 
    !> Edges of the stick zones of a patch next to slipping nodes, ascending.
    pure function stick_edges(patch) result(edges)
-      type(patch_type), intent(in) :: patch
+      type(fitted_patch_type), intent(in) :: patch
       real(wp), allocatable :: edges(:)
       integer :: i
 
@@ -801,7 +801,7 @@ contains
    !> Values at the knots of the continuous piecewise linear function with the least mean square distance to the tractions;
    !> zero at rooted ends.
    function projected(patch, knots) result(values)
-      type(patch_type), intent(in) :: patch
+      type(fitted_patch_type), intent(in) :: patch
       real(wp), intent(in) :: knots(:)
       complex(wp) :: values(size(knots))
       real(wp), parameter :: place(4) = [-0.86113631159405258_wp, -0.33998104358485626_wp, 0.33998104358485626_wp, &
@@ -851,7 +851,7 @@ contains
    !> Give the elements of a patch the resultants of its nodes: tractions are scaled by the normal force, and the missing
    !> tangential force is added in stick zones, or everywhere without any.
    subroutine balance(patch, knots, values)
-      type(patch_type), intent(in) :: patch
+      type(fitted_patch_type), intent(in) :: patch
       real(wp), intent(in) :: knots(:)
       complex(wp), intent(inout) :: values(:)
       real(wp) :: shape(size(knots)), wanted(2), there(2), area(2)
@@ -881,7 +881,7 @@ contains
 
    !> What is added to the shear of a patch at the knots, up to a factor: see balance.
    pure function shape_of_correction(patch, knots, values) result(shape)
-      type(patch_type), intent(in) :: patch
+      type(fitted_patch_type), intent(in) :: patch
       real(wp), intent(in) :: knots(:)
       complex(wp), intent(in) :: values(:)
       real(wp) :: shape(size(knots))
@@ -900,7 +900,7 @@ contains
    !> nodes and the moment of the shear about the centre of the normals: tractions are scaled by a linear function of the arc
    !> length, and shear is added as in balance.
    subroutine balance_inclined(patch, knots, values)
-      type(patch_type), intent(in) :: patch
+      type(fitted_patch_type), intent(in) :: patch
       real(wp), intent(in) :: knots(:)
       complex(wp), intent(inout) :: values(:)
       complex(wp) :: changes(size(knots), 3)

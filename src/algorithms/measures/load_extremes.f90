@@ -73,9 +73,9 @@ module mfv_load_extremes
    end type slip_range_type
 
    !> Tractions at some places of the surface: arc lengths; 1/pi integral of tau/(t - x) dt, p and tau, force/length^2; (places).
-   type :: samples_type
+   type :: surface_samples_type
       real(wp), allocatable :: arc(:), integral(:), pressure(:), shear(:)
-   end type samples_type
+   end type surface_samples_type
 
 contains
 
@@ -244,7 +244,7 @@ contains
       type(contact_state_type), intent(in) :: state
       type(patch_type), intent(in) :: patches(:)
       real(wp), intent(out) :: estimates(candidate_count)
-      type(samples_type) :: samples
+      type(surface_samples_type) :: samples
 
       call sample_surface(model, state, patches, samples)
       call add_body(model%scene%lower, 1)
@@ -279,7 +279,7 @@ contains
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       type(patch_type), intent(in) :: patches(:)
-      type(samples_type), intent(out) :: samples
+      type(surface_samples_type), intent(out) :: samples
       integer, parameter :: most_between = 12
       logical :: is_sample(model%nodes())
       integer, allocatable :: nodes(:)
@@ -363,7 +363,7 @@ contains
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       type(patch_type), intent(in) :: patches(:)
-      type(samples_type), intent(in) :: samples
+      type(surface_samples_type), intent(in) :: samples
       type(body_type), intent(in) :: body
       integer, intent(in) :: side
       real(wp), intent(in) :: stress(:), bulk

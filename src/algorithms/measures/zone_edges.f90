@@ -69,7 +69,7 @@ module mfv_zone_edges
 
    !> A traction near an edge: values at the outermost nodes of a zone, outermost first, and their distances from the first
    !> one, in intervals; or the integrals of the traction from the edge to the inner ends of these intervals.
-   type :: samples_type
+   type :: edge_samples_type
       !> Number of values, and of nodes in the whole zone.
       integer :: number = 0, zone = 0
       real(wp) :: inwards(0:most_samples - 1) = 0.0_wp, value(0:most_samples - 1) = 0.0_wp
@@ -80,7 +80,7 @@ module mfv_zone_edges
       !> Exponent of the distance, whether the discretisation error is known, and whether values are integrals of the traction.
       real(wp) :: power = 0.5_wp
       logical :: is_regular = .false., is_integral = .false.
-   end type samples_type
+   end type edge_samples_type
 
 contains
 
@@ -288,7 +288,7 @@ contains
       type(patch_type), intent(in) :: patch
       integer, intent(in) :: side
       real(wp), intent(out) :: edge, error
-      type(samples_type) :: samples
+      type(edge_samples_type) :: samples
       real(wp) :: distance
       logical :: solved
       integer :: outermost
@@ -342,7 +342,7 @@ contains
       integer, intent(in) :: side
       real(wp), intent(out) :: edge, error
       real(wp) :: lack(size(state%status)), power, direction, widest, least, distance
-      type(samples_type) :: samples
+      type(edge_samples_type) :: samples
       integer :: last, next, other, patch_end
 
       patch_end = merge(patch%last, patch%first, side > 0)
@@ -461,7 +461,7 @@ contains
    end function has_older_edges
 
    !> The outermost values of a traction in a zone from node `outermost` to node `other`; shape of the traction (nodes).
-   pure type(samples_type) function sampled(model, traction, outermost, other) result(samples)
+   pure type(edge_samples_type) function sampled(model, traction, outermost, other) result(samples)
       type(contact_model_type), intent(in) :: model
       real(wp), intent(in) :: traction(:)
       integer, intent(in) :: outermost, other
@@ -495,12 +495,12 @@ contains
    !> exponent is `power` or, behind a growing stick zone, larger by one: in long zones that with the straighter fit, and in between
    !> a weighted mean, so that rounding errors do not decide. Short zones, and unequal intervals with a discrete solution: `power`.
    subroutine find_distance_of_lack(samples, power, distance, error)
-      type(samples_type), intent(in) :: samples
+      type(edge_samples_type), intent(in) :: samples
       real(wp), intent(in) :: power
       real(wp), intent(out) :: distance, error
       integer, parameter :: short = 8, steepness = 4
       real(wp), parameter :: clearly = 2.0_wp
-      type(samples_type) :: straight
+      type(edge_samples_type) :: straight
       real(wp) :: steady, grown, weight, of_grown
       logical :: solved
 
@@ -521,7 +521,7 @@ contains
    !> Deviation of the second to fourth value from a straight line, relative to their change; `unknown_bend` for fewer or
    !> decreasing values.
    pure real(wp) function bend(samples)
-      type(samples_type), intent(in) :: samples
+      type(edge_samples_type), intent(in) :: samples
       real(wp) :: first, second
 
       bend = unknown_bend
@@ -564,8 +564,8 @@ contains
    end function slip_measure
 
    !> Tractions raised to the inverse of their exponent, relative to the largest.
-   pure type(samples_type) function straightened(samples, power) result(straight)
-      type(samples_type), intent(in) :: samples
+   pure type(edge_samples_type) function straightened(samples, power) result(straight)
+      type(edge_samples_type), intent(in) :: samples
       real(wp), intent(in) :: power
       real(wp) :: largest
 
@@ -645,7 +645,7 @@ contains
    !> Where straightened tractions vanish, in intervals outwards from the outermost node, and the uncertainty of that, intervals.
    !> `solved`: by the discrete solution, where the discretisation error is known, and not as the zero of nearly linear values.
    subroutine find_distance(samples, distance, error, solved)
-      type(samples_type), intent(in) :: samples
+      type(edge_samples_type), intent(in) :: samples
       real(wp), intent(out) :: distance, error
       logical, intent(out) :: solved
       !> By the largest of unequal intervals: their discretisation error moves the edge (docs/verification.md).
@@ -676,7 +676,7 @@ contains
 
    !> The distance by the discrete solution of unequal intervals, if `found`.
    subroutine find_graded_distance(samples, distance, found)
-      type(samples_type), intent(in) :: samples
+      type(edge_samples_type), intent(in) :: samples
       real(wp), intent(out) :: distance
       logical, intent(out) :: found
       type(graded_solution_type) :: solution
@@ -688,7 +688,7 @@ contains
 
    !> Uncertainty of the zero of nearly linear values, intervals: the distance of the zeros by nearer and by farther values.
    pure real(wp) function uncertainty_of_zero(samples) result(uncertainty)
-      type(samples_type), intent(in) :: samples
+      type(edge_samples_type), intent(in) :: samples
       real(wp) :: near, farther
       logical :: found(2)
 
@@ -704,7 +704,7 @@ contains
    !> to seventh are smooth (not near other edges); the second to seventh by least squares in a zone that has `grown` node by
    !> node; all of three nodes; a line through two. 1/2 if the zero is not within one interval of that.
    pure real(wp) function distance_to_zero(samples, grown) result(distance)
-      type(samples_type), intent(in) :: samples
+      type(edge_samples_type), intent(in) :: samples
       logical, intent(in) :: grown
       real(wp), parameter :: smooth = 0.04_wp
       real(wp) :: farther, trust

@@ -35,7 +35,7 @@ module mfv_patched_inverse
    real(wp), parameter :: interpolation_error = 1.0e-3_wp
    integer, parameter :: most_points_of_all = 600
 
-   type :: group_type
+   type :: node_group_type
       !> Nodes, ascending, and nodes between the ends that are not in the set.
       integer, allocatable :: nodes(:), gaps(:)
       !> The inverse of the block of a small group, shape (nodes, nodes); of T^-1(G, G), shape (gaps, gaps).
@@ -48,11 +48,11 @@ module mfv_patched_inverse
       real(wp), allocatable :: columns(:, :), products(:, :)
       !> Number of nodes and of points in the groups before this one.
       integer :: nodes_before = 0, points_before = 0
-   end type group_type
+   end type node_group_type
 
    type :: patched_inverse_type
       private
-      type(group_type), allocatable :: groups(:)
+      type(node_group_type), allocatable :: groups(:)
       !> Number of nodes; and of points of all groups, 0: one group.
       integer :: order = 0, points = 0
       !> B and the factors of 1 + B M, shape (points, points).
@@ -91,7 +91,7 @@ contains
       real(wp), intent(in) :: kernel(:)
       integer, intent(in) :: nodes(:)
       type(patched_inverse_type), intent(in), optional :: other
-      type(group_type), allocatable :: old(:)
+      type(node_group_type), allocatable :: old(:)
       integer, allocatable :: last(:)
       integer :: i, first
 
@@ -193,7 +193,7 @@ contains
 
    !> Move the `old` group with the same nodes, if there is one.
    subroutine adopt_same(group, old, nodes)
-      type(group_type), intent(inout) :: group, old(:)
+      type(node_group_type), intent(inout) :: group, old(:)
       integer, intent(in) :: nodes(:)
       integer :: i
 
@@ -208,7 +208,7 @@ contains
 
    !> Start with the T^-1 of the nearest order to `length` from an `old` group or from `other`.
    subroutine adopt_nearest(group, old, length, other)
-      type(group_type), intent(inout) :: group, old(:)
+      type(node_group_type), intent(inout) :: group, old(:)
       integer, intent(in) :: length
       type(patched_inverse_type), intent(in), optional :: other
       integer :: nearest
@@ -226,7 +226,7 @@ contains
 
    !> Number of the group whose T^-1 has the nearest order to `length`; 0: none has one.
    pure integer function nearest_order(groups, length) result(nearest)
-      type(group_type), intent(in) :: groups(:)
+      type(node_group_type), intent(in) :: groups(:)
       integer, intent(in) :: length
       integer :: i
 
@@ -241,7 +241,7 @@ contains
 
    !> Move a group, except its place in the set.
    subroutine move_group(from, to)
-      type(group_type), intent(inout) :: from, to
+      type(node_group_type), intent(inout) :: from, to
 
       call move_alloc(from%nodes, to%nodes)
       call move_alloc(from%gaps, to%gaps)
@@ -264,7 +264,7 @@ contains
 
    !> Prepare the inverse of the block of a group for its nodes.
    subroutine set_group(group, kernel, nodes)
-      type(group_type), intent(inout) :: group
+      type(node_group_type), intent(inout) :: group
       real(wp), intent(in) :: kernel(:)
       integer, intent(in) :: nodes(:)
       logical :: is_gap(nodes(1):nodes(size(nodes)))
@@ -309,7 +309,7 @@ contains
 
    !> Pressures of a group by its displacements, shape (nodes), both in `values`, without the other groups.
    subroutine apply_group(group, values)
-      type(group_type), intent(inout) :: group
+      type(node_group_type), intent(inout) :: group
       real(wp), intent(inout), contiguous :: values(:)
       real(wp) :: given(size(values))
 
@@ -377,14 +377,14 @@ contains
    end function point_count_of
 
    pure integer function last_node(group)
-      type(group_type), intent(in) :: group
+      type(node_group_type), intent(in) :: group
 
       last_node = group%nodes(size(group%nodes))
    end function last_node
 
    !> Set the points of a group, if their number has changed, with V and U^T V.
    subroutine set_columns(group, points)
-      type(group_type), intent(inout) :: group
+      type(node_group_type), intent(inout) :: group
       integer, intent(in) :: points
       real(wp) :: polynomials(size(group%nodes), points)
       integer :: i, n

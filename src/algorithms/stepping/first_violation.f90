@@ -54,7 +54,7 @@ module mfv_first_violation
    real(wp), parameter :: tolerance_factor = 1.0e3_wp
 
    !> Progress in a segment.
-   type :: progress_type
+   type :: event_progress_type
       !> Fraction of the segment that is done; whether the last increment had a length, and whether it has reached the end.
       real(wp) :: done = 0.0_wp
       logical :: moved = .false., at_end = .false.
@@ -66,7 +66,7 @@ module mfv_first_violation
       !> Consecutive increments of zero length, consecutive tiny ones, and increments since the last milestone.
       integer :: standing = 0, tiny = 0, since = 0
       real(wp) :: milestone = 0.0_wp
-   end type progress_type
+   end type event_progress_type
 
 contains
 
@@ -93,7 +93,7 @@ contains
       type(segment_type), intent(in) :: segment
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
-      type(progress_type) :: progress
+      type(event_progress_type) :: progress
       type(constraints_type) :: constraints
       integer :: nodes
 
@@ -122,7 +122,7 @@ contains
    subroutine make_increment(path, segment, progress, constraints, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
-      type(progress_type), intent(inout) :: progress
+      type(event_progress_type), intent(inout) :: progress
       type(constraints_type), intent(inout) :: constraints
       type(error_type), allocatable, intent(out) :: error
       logical :: relaxing, ready, passed
@@ -200,7 +200,7 @@ contains
    !> Errors MFV_NO_CONTINUATION, MFV_NOT_CONVERGED.
    subroutine look_for_solution(path, progress, found, error)
       class(contact_path_type), intent(inout) :: path
-      type(progress_type), intent(inout) :: progress
+      type(event_progress_type), intent(inout) :: progress
       logical, intent(out) :: found
       type(error_type), allocatable, intent(out) :: error
       logical :: dropped

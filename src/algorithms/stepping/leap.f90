@@ -27,8 +27,8 @@ module mfv_leap
    use mfv_motions, only: motion_count, motion_approach, motion_shift
    use mfv_node_status
    use mfv_observer, only: observer_type
-   use mfv_straight, only: apply_directly, before_separation, lacks_support, find_statuses_on_mesh, finish_large_increment, &
-                           grow_mesh, subsegment
+   use mfv_frictionless, only: apply_directly, before_separation, lacks_support, find_statuses_on_mesh, finish_large_increment, &
+                               grow_mesh, subsegment
    use mfv_tolerances, only: rounding, significant, visible
    implicit none
    private
@@ -47,10 +47,10 @@ module mfv_leap
 
    !> Progress in a segment, as fractions of it: what is done, the goal of large increments, and the length of the next interval.
    !> `by_violations`: whether that interval is applied by events.
-   type :: progress_type
+   type :: leap_progress_type
       real(wp) :: done = 0.0_wp, goal = 0.0_wp, length = 0.0_wp
       logical :: by_violations = .false.
-   end type progress_type
+   end type leap_progress_type
 
 contains
 
@@ -61,7 +61,7 @@ contains
       type(segment_type), intent(in) :: segment
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
-      type(progress_type) :: progress
+      type(leap_progress_type) :: progress
 
       if (.not. (segment%friction .and. path%model%scene%friction%acts() .and. &
                  (path%model%scene%method%accuracy > 0.0_wp .or. is_exact(path, segment)))) then
@@ -87,7 +87,7 @@ contains
    subroutine try_large_increments(path, segment, progress, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
-      type(progress_type), intent(inout) :: progress
+      type(leap_progress_type), intent(inout) :: progress
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
       type(segment_type) :: interval
@@ -135,7 +135,7 @@ contains
    subroutine continue_by_violations(path, segment, progress, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
-      type(progress_type), intent(inout) :: progress
+      type(leap_progress_type), intent(inout) :: progress
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
 

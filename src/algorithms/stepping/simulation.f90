@@ -17,7 +17,7 @@ module mfv_simulation
                                 most_rows, over_cycle, &
                                 over_rows, over_steps, slip_range_type
    use mfv_leap, only: apply_by_large_increments
-   use mfv_load_way, only: load_summary_type
+   use mfv_load_summary, only: load_summary_type
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_wear, control_keep, &
                           control_force, control_displacement
    use mfv_node_status, only: event_none, event_step_end, event_stopped, in_contact
@@ -27,7 +27,7 @@ module mfv_simulation
    use mfv_state_interior, only: find_largest_tension, find_largest_von_mises, surface_stress_at
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, MFV_INTERRUPTED, MFV_NO_CONTINUATION, MFV_SEPARATED
    use mfv_stress_search, only: largest_type
-   use mfv_straight, only: apply_directly
+   use mfv_frictionless, only: apply_directly
    use mfv_wear_block, only: find_wear_block, wear_block_type, widened, work_of_wear
    use mfv_strings, only: to_text
    implicit none

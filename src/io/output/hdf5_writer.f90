@@ -33,16 +33,16 @@ module mfv_hdf5_writer
    end type writer_type
 
    !> A dataset along a scale, and which of its dimensions, the slowest is 0.
-   type, bind(c) :: member_type
+   type, bind(c) :: scale_member_type
       integer(haddr_t) :: dataset
       integer(c_int) :: dimension
-   end type member_type
+   end type scale_member_type
 
    !> An array of variable length, as H5T's hvl_t.
-   type, bind(c) :: list_type
+   type, bind(c) :: vlen_type
       integer(c_size_t) :: length
       type(c_ptr) :: values
-   end type list_type
+   end type vlen_type
 
    !> Every result has this attribute of the root, and no other file.
    character(*), parameter :: mark_of_result = 'outcome'
@@ -254,7 +254,7 @@ contains
       character(*), intent(in) :: group
       type(field_type), intent(in) :: fields(:), scales(:)
       integer(hid_t) :: place, dataset, scale(size(scales))
-      type(member_type) :: members(size(fields), size(scales))
+      type(scale_member_type) :: members(size(fields), size(scales))
       integer :: count(size(scales)), code, i, j
 
       call create_group(writer, group, place)
@@ -303,7 +303,7 @@ contains
          call note(writer, code)
          do k = 1, dimensions
             count(which(k)) = count(which(k)) + 1
-            members(count(which(k)), which(k)) = member_type(reference%ref, k - 1)
+            members(count(which(k)), which(k)) = scale_member_type(reference%ref, k - 1)
          end do
       end subroutine attach
    end subroutine write_group
@@ -314,12 +314,12 @@ contains
       type(writer_type), intent(inout) :: writer
       integer(hid_t), intent(in) :: dataset
       integer(haddr_t), intent(in), target :: along(:)
-      type(list_type), target :: lists(size(along))
+      type(vlen_type), target :: lists(size(along))
       integer(hid_t) :: type
       integer :: code, i
 
       do i = 1, size(along)
-         lists(i) = list_type(1_c_size_t, c_loc(along(i)))
+         lists(i) = vlen_type(1_c_size_t, c_loc(along(i)))
       end do
       call h5tvlen_create_f(H5T_STD_REF_OBJ, type, code)
       call note(writer, code)
@@ -331,7 +331,7 @@ contains
    subroutine write_members(writer, scale, members)
       type(writer_type), intent(inout) :: writer
       integer(hid_t), intent(in) :: scale
-      type(member_type), intent(in), target :: members(:)
+      type(scale_member_type), intent(in), target :: members(:)
       integer(hid_t) :: type
       integer :: code
 

@@ -1,7 +1,7 @@
 !> Load segments without friction depend on the final loads alone. They are applied in one large increment with the active set
 !> method (mfv_active_set). The method of events takes over where the bodies separate, and where no solution is found. Segments
 !> with friction are applied by events.
-module mfv_straight
+module mfv_frictionless
    use mfv_active_set, only: first_guess, find_statuses
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path
@@ -188,4 +188,4 @@ contains
       fraction = load_type(load%control, load%value + begin*load%rate, (end - begin)*load%rate)
    end function load_between
 
-end module mfv_straight
+end module mfv_frictionless

@@ -1,5 +1,5 @@
 !> Summary of the steps taken, for closed forms; its size does not depend on their number.
-module mfv_load_way
+module mfv_load_summary
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_count, motion_approach, motion_shift, control_keep, control_force, control_displacement
    use mfv_scene, only: step_type
@@ -49,4 +49,4 @@ contains
       end if
    end subroutine add
 
-end module mfv_load_way
+end module mfv_load_summary
