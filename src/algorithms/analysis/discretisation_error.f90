@@ -8,7 +8,7 @@ module mfv_discretisation_error
    use mfv_compliance, only: block_up, block_wt
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
-   use mfv_corners, only: corner_type, find_corner
+   use mfv_corners, only: corner_type, corners_of, find_corner
    use mfv_error_bar
    use mfv_friction, only: friction_coefficient_type
    use mfv_kinds, only: pi, wp
@@ -469,6 +469,8 @@ contains
          where (observables%error == error_edges .and. observables%unit == '1') &
             allowances = 2.0_wp*allowances/max(values(observable_place('contact_length')), model%interval())
          where (observables%name == 'contact_length') allowances = 2.0_wp*allowances
+         call add_narrow_stick(observable_place('smallest_stick_ratio'), model%interval()/ &
+                               max(values(observable_place('contact_length')), model%interval()))
          call add_coarse_slip(simulation%slip, 'dissipation', 1.0_wp)
          if (simulation%cycle_count > 0) then
             associate (cycle => simulation%cycles(simulation%cycle_count))
@@ -492,6 +494,17 @@ contains
       end associate
 
    contains
+
+      !> A stick zone of few intervals before the end, where its edges are not looked at, is known to one of them; without a node to
+      !> two. `interval`: over the length of the contact. None where all nodes slide in the end.
+      subroutine add_narrow_stick(place, interval)
+         integer, intent(in) :: place
+         real(wp), intent(in) :: interval
+         real(wp), parameter :: narrow = 4.0_wp
+
+         if (.not. (values(place) < narrow*interval .and. values(observable_place('stick_ratio')) > 0.0_wp)) return
+         allowances(place) = max(allowances(place), merge(1.0_wp, 2.0_wp, values(place) > 0.0_wp)*interval)
+      end subroutine add_narrow_stick
 
       !> What is worn off has the relative error of the dissipation of the first or the last cycle, whichever is larger.
       subroutine add_to_wear()
@@ -638,13 +651,16 @@ contains
       type(contact_state_type), intent(in) :: state
       logical, intent(in) :: has_receded
       type(patch_type), intent(inout) :: patches(:)
-      !> In intervals; the last one where fewer than two nodes slip beside the stick zone.
-      real(wp), parameter :: coupled = 0.02_wp, receded = 0.5_wp, grown = 0.2_wp, grown_to_end = 0.25_wp
+      !> In intervals; grown_to_end where fewer than two nodes slip beside the stick zone; cornered over their number: around a
+      !> corner the pressure has an error of the first order, which moves the edges in second order.
+      real(wp), parameter :: coupled = 0.02_wp, receded = 0.5_wp, worn = 0.5_wp, grown = 0.2_wp, grown_to_end = 0.25_wp, &
+                             cornered = 0.2_wp
       integer, parameter :: fewest_alike = 4
-      logical :: can_grow, depends_on_friction
+      logical :: can_grow, depends_on_friction, has_corner
       integer :: i, j
 
       can_grow = stick_zones_can_grow(model)
+      has_corner = size(corners_of(model, state)) > 0
       depends_on_friction = model%compliance%elastic_block(block_wt) .and. pressing_shears(model)
       do i = 1, size(patches)
          associate (patch => patches(i), width => model%width)
@@ -654,6 +670,15 @@ contains
             if (depends_on_friction .and. .not. patch%right_ends) &
                patch%right_error = max(patch%right_error, width(patch%last)*merge(receded, coupled, has_receded .and. &
                                                                                 slipping_run(state, patch%last, -1) < fewest_alike))
+            if (has_corner) then
+               patch%left_error = max(patch%left_error, cornered*width(patch%first)/(patch%last - patch%first + 1))
+               patch%right_error = max(patch%right_error, cornered*width(patch%last)/(patch%last - patch%first + 1))
+            end if
+            ! The pressure vanishes otherwise where the surface is worn.
+            if (model%scene%wear%acts()) then
+               if (state%worn(patch%first) > 0.0_wp) patch%left_error = max(patch%left_error, worn*width(patch%first))
+               if (state%worn(patch%last) > 0.0_wp) patch%right_error = max(patch%right_error, worn*width(patch%last))
+            end if
             if (.not. can_grow) cycle
             do j = 1, size(patch%stick)
                associate (zone => patch%stick(j))

@@ -339,6 +339,8 @@ contains
       call add_work(simulation%slip, 'dissipation largest_slip_range')
       ! The tension behind a contact depends on the root of its slip zone: without one it would have no limit.
       call add_zones(simulation%slip, 'stick_ratio peak_shear extremes'//tensions(simulation))
+      ! The pressure has a maximum where the worn part of the surface ends.
+      if (simulation%contact%model%scene%wear%acts()) call add_zones(simulation%slip, 'peak_pressure')
       if (.not. simulation%slip%is_coarse_now(interval)) then
          call add_edge(-1)
          call add_edge(1)
@@ -458,9 +460,8 @@ contains
       if (simulation%cycle_count == 0) return
       associate (cycle => simulation%cycles(simulation%cycle_count))
          if (cycle%dissipation() >= least_part*cycle%first_dissipation) return
-         names = 'largest_slip_range'
-         if (cycle%dissipation() > 0.0_wp) names = trim(names)//' stick_ratio stick_ratio_reversal stick_ratio_return '// &
-                                                   'smallest_stick_ratio largest_stick_ratio'
+         names = 'largest_slip_range stick_ratio_reversal smallest_stick_ratio'
+         if (cycle%dissipation() > 0.0_wp) names = trim(names)//' stick_ratio stick_ratio_return largest_stick_ratio'
          call add_unresolved(unresolved, trim(names), 'the slip vanishes from cycle to cycle: the last one dissipates '// &
                              to_text(cycle%dissipation()/cycle%first_dissipation, 2)//' of the first one', &
                              'whether nodes still slip depends on the mesh')

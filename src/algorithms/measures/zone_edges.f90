@@ -65,7 +65,7 @@ module mfv_zone_edges
    integer, parameter :: most_samples = 7
    real(wp), parameter :: unknown_bend = 1.0e10_wp
    !> Uncertainty of an edge, intervals (docs/verification.md): at least; of an edge that cannot be located between nodes.
-   real(wp), parameter :: least_error = 0.002_wp, error_if_unknown = 0.5_wp
+   real(wp), parameter :: least_error = 0.001_wp, error_if_unknown = 0.5_wp
 
    !> A traction near an edge: values at the outermost nodes of a zone, outermost first, and their distances from the first
    !> one, in intervals; or the integrals of the traction from the edge to the inner ends of these intervals.
