@@ -226,15 +226,15 @@ def relations(problem: Problem, base: mfv.Result, seed: int) -> dict[str, Callab
     pieces = in_pieces(plain)
     if pieces is not None and not problem.has("mesh", "refine"):
         # Other increments, each with the error that is allowed.
-        allowed = max(tolerance, OVER_ACCURACY * problem.accuracy())
-        found["split steps"] = lambda: without_extremes(compared(base, pieces.run(), allowed))
+        of_pieces = max(tolerance, OVER_ACCURACY * problem.accuracy())
+        found["split steps"] = lambda: without_extremes(compared(base, pieces.run(), of_pieces))
     found["solver"] = lambda: compared(base, with_solver(plain).run(), tolerance)
     events = with_events(plain)
     if events is not None:
         # Rounding errors may change a block of cycles of wear by one.
-        found["stepping"] = lambda: _accuracy_differences(
-            base, events.run(), max(problem.accuracy(), 0.1 * problem.wear_tolerance())
-        )
+        blocks = problem.has("wear") and bool(np.any(base.cycles.block > 1))
+        allowed = max(problem.accuracy(), 0.1 * problem.wear_tolerance() if blocks else 0.0)
+        found["stepping"] = lambda: _accuracy_differences(base, events.run(), allowed)
     found["Python"] = lambda: compared(base, plain.scene().run(), TOLERANCE)
     found["program"] = lambda: compared(base, by_program(plain), TOLERANCE)
     return found

@@ -75,8 +75,9 @@ def _refine(made: Problem, base: mfv.Result, number: int) -> None:
 def _fix_cycles(made: Problem, base: mfv.Result) -> None:
     """As many cycles as the base has, where they end when they are steady: on another mesh that may be one cycle sooner or later."""
     with_cycles = [keys for _, keys in made.groups if "cycles" in keys]
-    if len(with_cycles) == 1 and with_cycles[0].pop("steady_tolerance", None) is not None and base.observables.get("cycles", 0) > 0:
-        with_cycles[0]["cycles"] = int(base.observables.cycles)
+    done = int(base.observables.get("cycles", 0))
+    if len(with_cycles) == 1 and done > 0 and with_cycles[0].pop("steady_tolerance", None) is not None:
+        with_cycles[0]["cycles"] = done
 
 
 def _solve_otherwise(made: Problem, number: int) -> None:

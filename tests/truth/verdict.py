@@ -46,7 +46,7 @@ _STICK = r"stick_ratio|stick_(left|right|length|zones)"
 _TRACTIONS = r"peak_(pressure|shear)|(pressure|shear)_number"
 _TENSION = r"(lower|upper)_tension(_x)?"
 _CYCLE = r"cycle_dissipation|dissipation_number|loss_factor|.*_force_work|.*stress_work|moment_work"
-_MOTIONS = r"approach.*|shift.*|rotation.*|.*stiffness.*"
+_MOTIONS = r"approach.*|shift.*|rotation.*|moment|.*_contraction|.*stiffness.*"
 #: Names after "not resolved:" in a warning, and the quantities that follow from the one that is named; others stand for themselves.
 NAMED = {
     "contact_half_width": r"(contact_)?half_width(_number)?|contact_(left|right|centre)",
@@ -59,7 +59,7 @@ NAMED = {
     "upper_tension": r"upper_tension(_x)?",
     "tension at the left edge": _TENSION,
     "tension at the right edge": _TENSION,
-    "approach": r"approach.*|rotation.*",
+    "approach": r"approach.*|rotation.*|moment",
     "shift": r"shift.*|.*_contraction",
     "extremes": r"(largest|smallest)_.*",
     "turning_points": r".*_(loading|reversal|return|amplitude|number)|stick_ratio_(lowest|highest)|patch_shift.*",
@@ -148,7 +148,6 @@ def judge(problem: Problem, base: mfv.Result, truth: Truth) -> dict[str, Verdict
     coarser, finer = quantities(truth.coarser), quantities(truth.finer)
     scales, limit = Scales(truth.finer), max(RIGHT, problem.accuracy(), problem.wear_tolerance())
     patterns = flagged_quantities(base)
-    narrow = {kind: _differ_by_narrow_zones(base, truth.finer, statuses) for kind, statuses in _ZONES.items()}
     found = {}
     for path, values in quantities(base).items():
         group, name = path.split("/")
@@ -181,27 +180,46 @@ def judge(problem: Problem, base: mfv.Result, truth: Truth) -> dict[str, Verdict
             key=lambda verdict: (WORDS.index(verdict.word), verdict.error),
             default=Verdict("right", 0.0, bar, 0.0, math.nan, math.nan),
         )
-        if found[path].word == "finding" and any(narrow[kind] and re.fullmatch(kind, name) for kind in narrow):
-            found[path] = found[path]._replace(word="unknown" if re.fullmatch(_STICK_POSITION, name) else "right")
+        found[path] = _but_for_narrow_zones(found[path], name, base, truth.finer)
     return found
 
 
-def _differ_by_narrow_zones(base: mfv.Result, fine: mfv.Result, statuses: tuple[NodeStatus, ...]) -> bool:
-    """Whether the base has as many zones of these statuses as the truth without some of its narrow zones and gaps."""
-    every, wide = _number_of_zones(fine, statuses), _number_of_zones(fine, statuses, NARROW * float(np.max(base.mesh.width)))
-    return wide != every and min(wide, every) <= _number_of_zones(base, statuses) <= max(wide, every)
+def _but_for_narrow_zones(verdict: Verdict, name: str, base: mfv.Result, fine: mfv.Result) -> Verdict:
+    """The verdict of a finding if zones and gaps that the mesh of the base does not resolve explain it: a number without them is right,
+    another one up to that of all zones is not known, nor is an edge that is that of one of the wide zones."""
+    statuses = next((found for names, found in _ZONES.items() if re.fullmatch(names, name)), None)
+    if verdict.word != "finding" or statuses is None:
+        return verdict
+    widths = np.interp(fine.mesh.x, base.mesh.x, base.mesh.width)
+    every, wide = _zones(fine, statuses, 0.0 * widths), _zones(fine, statuses, NARROW * widths)
+    if len(every) == len(wide):
+        return verdict
+    if re.fullmatch(_STICK_POSITION, name):
+        ends = [first if name == "stick_left" else last - 1 for first, last in wide]
+        explains = any(abs(fine.mesh.x[end] - verdict.value) <= NARROW * widths[end] for end in ends)
+        return verdict._replace(word="unknown") if explains else verdict
+    own = len(_zones(base, statuses, 0.0 * np.asarray(base.mesh.x)))
+    if own == len(wide):
+        return verdict._replace(word="right")
+    return verdict._replace(word="unknown") if len(wide) < own < len(every) else verdict
 
 
-def _number_of_zones(result: mfv.Result, statuses: tuple[NodeStatus, ...], narrow: float = 0.0) -> int:
-    """Number of runs of nodes with one of these statuses; narrower gaps between them are filled, narrower runs omitted."""
+def _zones(result: mfv.Result, statuses: tuple[NodeStatus, ...], narrow: np.ndarray) -> list[tuple[int, int]]:
+    """First node, and that after the last one, of the runs of nodes with one of these statuses; gaps between them that are narrower
+    than `narrow`, shape (nodes), are filled, then narrower runs omitted."""
     inside = np.isin(result.state.status, statuses)
     for held in (False, True):
-        ends = [0, *(np.flatnonzero(np.diff(inside)) + 1), len(inside)]
-        for first, last in zip(ends[:-1], ends[1:]):
+        for first, last in _runs(inside):
             bounded = held or (first > 0 and last < len(inside))
-            if inside[first] == held and bounded and np.sum(result.mesh.width[first:last]) < narrow:
+            if inside[first] == held and bounded and np.sum(result.mesh.width[first:last]) < np.max(narrow[first:last]):
                 inside[first:last] = not held
-    return int(np.count_nonzero(np.diff(inside, prepend=False) & inside))
+    return [(first, last) for first, last in _runs(inside) if inside[first]]
+
+
+def _runs(values: np.ndarray) -> list[tuple[int, int]]:
+    """First element, and that after the last one, of the runs of equal values."""
+    ends = [0, *(np.flatnonzero(np.diff(values)) + 1), len(values)]
+    return list(zip(ends[:-1], ends[1:]))
 
 
 def closed_or(truth: Truth, path: str, one: float) -> float:

@@ -70,7 +70,7 @@ contains
             if (observables(place)%error == error_none .or. ieee_is_nan(values(place, 1))) cycle
             if (is_unresolved(unresolved, trim(observables(place)%name))) then
                estimate%bar(place) = unresolved_bar(values(place, :))
-            else if (is_there(simulation%contact%model, place, values(place, :), allowances(place, :))) then
+            else if (is_there(simulation%contact%model, place, values, allowances(place, :))) then
                associate (behaviour => observables(place)%error)
                   estimate%bar(place) = new_error_bar(nodes, values(place, :), allowances(place, :), &
                                                       any(behaviour == [error_edges, error_stick, error_place]), &
@@ -183,23 +183,30 @@ contains
       end associate
    end function is_smooth
 
-   !> Whether an observable is modelled, is not prescribed, and is not zero on all meshes and certainly so.
+   !> Whether an observable is modelled, is not prescribed, and is not zero on all meshes and certainly so. `values`: of all
+   !> observables on all meshes.
    pure logical function is_there(model, place, values, allowances)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: place
-      real(wp), intent(in) :: values(:), allowances(:)
+      real(wp), intent(in) :: values(:, :), allowances(:)
       !> Relative difference of a prescribed load on two meshes.
       real(wp), parameter :: round_off = certified
+      real(wp) :: scale
 
-      select case (observables(place)%error)
-      case (error_stick)
-         is_there = model%tangential
-      case (error_load)
-         is_there = maxval(abs(values - values(1))) > round_off*maxval(abs(values))
-      case default
-         is_there = any(abs(values) > 0.0_wp)
-         if (any(observables(place)%error == [error_smooth, error_place])) is_there = is_there .or. any(allowances > 0.0_wp)
-      end select
+      associate (own => values(place, :))
+         select case (observables(place)%error)
+         case (error_stick)
+            is_there = model%tangential
+         case (error_load)
+            scale = maxval(abs(own))
+            if (observables(place)%name == 'moment') scale = max(scale, maxval(abs(values(observable_place('normal_force'), :)* &
+                                                                                   values(observable_place('contact_length'), :))))
+            is_there = maxval(abs(own - own(1))) > round_off*scale
+         case default
+            is_there = any(abs(own) > 0.0_wp)
+            if (any(observables(place)%error == [error_smooth, error_place])) is_there = is_there .or. any(allowances > 0.0_wp)
+         end select
+      end associate
    end function is_there
 
    !> Numbers of intervals of the mesh and of different coarser meshes; or, in `estimate`, why there are none.
@@ -469,7 +476,7 @@ contains
          where (observables%error == error_edges .and. observables%unit == '1') &
             allowances = 2.0_wp*allowances/max(values(observable_place('contact_length')), model%interval())
          where (observables%name == 'contact_length') allowances = 2.0_wp*allowances
-         call add_narrow_stick(observable_place('smallest_stick_ratio'), model%interval()/ &
+         call add_narrow_stick(observable_place('smallest_stick_ratio'), contact_interval(model, simulation%contact%state)/ &
                                max(values(observable_place('contact_length')), model%interval()))
          call add_coarse_slip(simulation%slip, 'dissipation', 1.0_wp)
          if (simulation%cycle_count > 0) then
@@ -478,7 +485,6 @@ contains
                call add_coarse_slip(cycle%first_slip, 'first_cycle_dissipation', 1.0_wp)
                call add_coarse_slip(cycle%slip(), 'loss_factor', pi*cycle%force_amplitude()*cycle%shift_amplitude())
             end associate
-            if (model%scene%wear%acts()) call add_to_wear()
          end if
          do i = 1, observable_count
             if (observables(i)%error == error_place .and. .not. ieee_is_nan(values(i))) &
@@ -492,28 +498,31 @@ contains
          where (observables%error == error_pressure .or. observables%error == error_shear .or. observables%error == error_local) &
             allowances = allowances + certificate%increment_traction_error*certificate%traction_scale
       end associate
+      if (simulation%contact%model%scene%wear%acts() .and. simulation%cycle_count > 0) call add_to_wear()
 
    contains
 
       !> A stick zone of few intervals before the end, where its edges are not looked at, is known to one of them; without a node to
-      !> two. `interval`: over the length of the contact. None where all nodes slide in the end.
+      !> two. `interval`: over the length of the contact. None where all nodes slide in the end, or at the ends of cycles.
       subroutine add_narrow_stick(place, interval)
          integer, intent(in) :: place
          real(wp), intent(in) :: interval
          real(wp), parameter :: narrow = 4.0_wp
 
          if (.not. (values(place) < narrow*interval .and. values(observable_place('stick_ratio')) > 0.0_wp)) return
+         if (values(observable_place('force_number')) >= 1.0_wp - significant) return
          allowances(place) = max(allowances(place), merge(1.0_wp, 2.0_wp, values(place) > 0.0_wp)*interval)
       end subroutine add_narrow_stick
 
-      !> What is worn off has the relative error of the dissipation of the first or the last cycle, whichever is larger.
+      !> What is worn off has the relative error of all cycles together: the first one and others like the last one.
       subroutine add_to_wear()
-         integer :: dissipation(2)
          real(wp) :: part
 
-         dissipation = [observable_place('first_cycle_dissipation'), observable_place('cycle_dissipation')]
-         part = maxval(allowances(dissipation))
-         part = min(part/max(maxval(abs(values(dissipation))), tiny(part)), 1.0_wp)
+         associate (first => observable_place('first_cycle_dissipation'), last => observable_place('cycle_dissipation'), &
+                    others => simulation%cycle_count - 1)
+            part = min((allowances(first) + others*allowances(last))/ &
+                       max(abs(values(first)) + others*abs(values(last)), tiny(part)), 1.0_wp)
+         end associate
          where (observables%name == 'worn_area' .or. observables%name == 'wear_depth') allowances = max(allowances, part*values)
       end subroutine add_to_wear
 
@@ -595,7 +604,8 @@ contains
             if (.not. largest > nodal) &
                of_behaviour(error_shear) = room_at_kink(abs(state%fields%shear), holds(state%status))
             of_behaviour(error_shear) = max(of_behaviour(error_shear), change_by_edges(model, state, patches, largest), &
-                                            pressure_at_jumps(model, state%fields%pressure)*largest/maxval(state%fields%pressure))
+                                            pressure_at_jumps(model, state%fields%pressure)*largest/ &
+                                            max(maxval(state%fields%pressure), tiny(1.0_wp)))
          end if
       end associate
    end function allowances_of_behaviours
@@ -651,16 +661,19 @@ contains
       type(contact_state_type), intent(in) :: state
       logical, intent(in) :: has_receded
       type(patch_type), intent(inout) :: patches(:)
-      !> In intervals; grown_to_end where fewer than two nodes slip beside the stick zone; cornered over their number: around a
-      !> corner the pressure has an error of the first order, which moves the edges in second order.
+      !> In intervals; grown_to_end where fewer than two nodes slip beside the stick zone; worn where the outermost node is, since the
+      !> pressure vanishes otherwise there; cornered over the number of nodes of the patch: around a corner in contact the pressure
+      !> has an error of the first order, which moves the edges in second order.
       real(wp), parameter :: coupled = 0.02_wp, receded = 0.5_wp, worn = 0.5_wp, grown = 0.2_wp, grown_to_end = 0.25_wp, &
                              cornered = 0.2_wp
       integer, parameter :: fewest_alike = 4
-      logical :: can_grow, depends_on_friction, has_corner
+      logical :: can_grow, depends_on_friction
+      type(corner_type), allocatable :: corners(:)
+      real(wp) :: least
       integer :: i, j
 
       can_grow = stick_zones_can_grow(model)
-      has_corner = size(corners_of(model, state)) > 0
+      corners = corners_of(model, state)
       depends_on_friction = model%compliance%elastic_block(block_wt) .and. pressing_shears(model)
       do i = 1, size(patches)
          associate (patch => patches(i), width => model%width)
@@ -670,15 +683,12 @@ contains
             if (depends_on_friction .and. .not. patch%right_ends) &
                patch%right_error = max(patch%right_error, width(patch%last)*merge(receded, coupled, has_receded .and. &
                                                                                 slipping_run(state, patch%last, -1) < fewest_alike))
-            if (has_corner) then
-               patch%left_error = max(patch%left_error, cornered*width(patch%first)/(patch%last - patch%first + 1))
-               patch%right_error = max(patch%right_error, cornered*width(patch%last)/(patch%last - patch%first + 1))
-            end if
-            ! The pressure vanishes otherwise where the surface is worn.
-            if (model%scene%wear%acts()) then
-               if (state%worn(patch%first) > 0.0_wp) patch%left_error = max(patch%left_error, worn*width(patch%first))
-               if (state%worn(patch%last) > 0.0_wp) patch%right_error = max(patch%right_error, worn*width(patch%last))
-            end if
+            least = 0.0_wp
+            if (any(corners%place > patch%left .and. corners%place < patch%right)) least = cornered/(patch%last - patch%first + 1)
+            if (.not. patch%left_ends) patch%left_error = max(patch%left_error, width(patch%first)* &
+                                                              max(least, merge(worn, 0.0_wp, is_worn(patch%first))))
+            if (.not. patch%right_ends) patch%right_error = max(patch%right_error, width(patch%last)* &
+                                                                max(least, merge(worn, 0.0_wp, is_worn(patch%last))))
             if (.not. can_grow) cycle
             do j = 1, size(patch%stick)
                associate (zone => patch%stick(j))
@@ -689,6 +699,15 @@ contains
             end do
          end associate
       end do
+
+   contains
+
+      pure logical function is_worn(node)
+         integer, intent(in) :: node
+
+         is_worn = .false.
+         if (model%scene%wear%acts()) is_worn = state%worn(node) > 0.0_wp
+      end function is_worn
    end subroutine widen_uncertainties
 
    !> Whether the contact was wider than in a state by an interval or more, or the surfaces are stretched: shear tractions at the

@@ -17,7 +17,7 @@ module mfv_zone_edges
    use mfv_contact_state, only: contact_state_type
    use mfv_edge_solutions, only: graded_solution_type, least_power, most_power, new_graded_solution, find_solved_distance
    use mfv_kinds, only: pi, wp
-   use mfv_motions, only: control_keep, motion_shift
+   use mfv_motions, only: bulk_motions, control_keep, motion_approach, motion_rotation, motion_shift
    use mfv_node_status, only: holds, in_contact, slip_sign, slips
    use mfv_surface_tractions, only: root_shift
    use mfv_tolerances, only: certified, significant, visible
@@ -439,21 +439,32 @@ contains
       end function at_its_limit
    end subroutine find_stick_edge
 
-   !> Whether stick zones can have older edges than those of one shear, or of the two ends of a cycle that are alike.
+   !> Whether stick zones can have older edges than those of one shear, or of the two ends of a cycle that are alike: shear by the
+   !> tangential force or the shift, the rotation, or a bulk stress.
    pure logical function has_older_edges(model)
       type(contact_model_type), intent(in) :: model
+      integer, parameter :: shearing(*) = [motion_shift, motion_rotation, bulk_motions]
+      integer :: i, number, motion, first, control
       real(wp) :: target(2)
-      integer :: i, number
 
       number = 0
       has_older_edges = .true.
       if (model%scene%wear%acts()) return
       do i = 1, size(model%scene%steps)
          associate (step => model%scene%steps(i))
-            if (step%control(motion_shift) == control_keep) cycle
-            if (number == 2 .or. allocated(step%path)) return
+            if (number > 0 .and. step%control(motion_approach) /= control_keep) return
+            if (.not. step%friction .or. all(step%control(shearing) == control_keep)) cycle
+            motion = shearing(findloc(step%control(shearing) /= control_keep, .true., dim=1))
+            if (count(step%control(shearing) /= control_keep) > 1 .or. allocated(step%path)) return
+            if (number == 0) then
+               first = motion
+               control = step%control(motion)
+               if (step%cycles > 0) return
+            else if (number == 2 .or. motion /= first .or. step%control(motion) /= control) then
+               return
+            end if
             number = number + 1
-            target(number) = step%target(motion_shift)
+            target(number) = step%target(motion)
          end associate
       end do
       has_older_edges = .false.
@@ -623,7 +634,7 @@ contains
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: node, samples
       integer, parameter :: about = 2, fewest = 3
-      !> Of widths; of entries, which on a circle differ by (h/R)^2.
+      !> Of widths, and of entries of matrices; of entries of circles, which differ by (h/R)^2.
       real(wp), parameter :: near = 5.0e-3_wp, alike = 0.05_wp
       !> (C(0) - C(1))/(C(1) - C(2)), C(j) = (j - 1/2) ln|j - 1/2| - (j + 1/2) ln(j + 1/2).
       real(wp), parameter :: ratio = 1.5_wp*log(3.0_wp)/(2.5_wp*log(2.5_wp) - 3.0_wp*log(1.5_wp) - 0.5_wp*log(2.0_wp))
@@ -638,7 +649,8 @@ contains
       entries(1, :) = entries(1, :)/model%width(middle - about:middle + about)
       steps = [2.0_wp*entries(1, 0) - entries(1, -1) - entries(1, 1), &
                entries(1, -1) + entries(1, 1) - entries(1, -2) - entries(1, 2)]
-      has_known_error = abs(steps(1) - ratio*steps(2)) <= alike*abs(steps(1)) .and. &
+      has_known_error = abs(steps(1) - ratio*steps(2)) <= merge(near, alike, model%scene%lower%is_matrix())* &
+                        abs(steps(1)) .and. &
                         maxval(abs(model%width(middle - about:middle + about) - model%width(node))) <= near*model%width(node)
    end function has_known_error
 

@@ -924,7 +924,7 @@ contains
             is_left(i) = .false.
             if (found%row > 0) then
                if (ieee_is_nan(found%value)) exit
-               ! The last state has a value of its own among the observables, which is not larger.
+               ! The last state, if it is among these, has a value of its own among the observables, which must not be larger.
                if (estimates(i) < least*found%value .and. extremes%row(i, candidate) /= extremes%last_row) cycle
             end if
             call find_largest(self%padded(self%marks(first + i - 1)))
