@@ -124,3 +124,86 @@ def test_round_off_does_not_decide() -> None:
         for other in (mirrored, changed):
             for name in ("contact_half_width", "stick_ratio", "lower_tension", "upper_tension"):
                 assert other.observables[name] == pytest.approx(one.observables[name], rel=1e-6), (name, keys)
+
+
+def test_conforming_contacts_have_edges_between_nodes() -> None:
+    """A pin in a bore on intervals of a tenth of the half-width: edges to 0.03 intervals of those on 401 nodes."""
+    errors = []
+    for clearance in (0.002, 0.006, 0.02):
+        found = []
+        for nodes in (25, 31, 401):
+            scene = mfv.Scene(
+                mfv.Body.hole(1.0, shear_modulus=1.0, poisson_ratio=0.3),
+                mfv.Body.disk(1.0 - clearance, rigid=True),
+                coupling="none",
+                plane="stress",
+                mesh=mfv.Mesh(normals="radial", gap="exact", nodes=nodes, half_width=0.6),
+                steps=[mfv.Step(normal_force=0.3 * clearance)],
+            )
+            result = mfv.run(scene)
+            found.append((result.observables.contact_length, float(result.mesh.width[0])))
+        errors += [abs(length - found[-1][0]) / width for length, width in found[:-1]]
+    assert max(errors) < 0.03, errors
+
+
+@pytest.mark.parametrize("back", [-0.0285, -0.027, -0.0255])
+def test_unequal_reversals_of_a_bulk_stress_have_uncertain_edges(back: float) -> None:
+    """An older edge in the interval of the present one is not seen in the tractions."""
+
+    def solved(nodes: int) -> mfv.Result:
+        return mfv.run(
+            mfv.Scene(
+                mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.3),
+                mfv.Body.disk(1.0, rigid=True),
+                coupling="none",
+                friction=mfv.Friction.coulomb(0.5),
+                mesh=mfv.Mesh(nodes=nodes, half_width=0.12),
+                steps=[mfv.Step(normal_force=0.02), mfv.Step(lower_bulk_stress=0.03), mfv.Step(lower_bulk_stress=back)],
+                output=mfv.Output(error_estimate=True),
+            )
+        )
+
+    coarse, fine = solved(101), solved(701)
+    error = abs(coarse.observables.stick_ratio - fine.observables.stick_ratio)
+    assert error < 3.0 * coarse.error_estimate.stick_ratio_error
+
+
+def test_ends_of_bodies_and_prescribed_moments_are_exact() -> None:
+    punch = mfv.Scene(
+        mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.3),
+        mfv.Body.flat_punch(0.4),
+        friction=mfv.Friction.coulomb(0.5),
+        wear=mfv.Wear(coefficient=1e-3),
+        mesh=mfv.Mesh(nodes=61),
+        steps=[mfv.Step(normal_force=0.02), mfv.Step(shift=0.02), mfv.Step(shift=-0.02, cycles=2)],
+        output=mfv.Output(error_estimate=True),
+    )
+    estimate = mfv.run(punch).error_estimate
+    assert estimate.contact_half_width_error == 0.0
+    tilted = mfv.Scene(
+        mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.3),
+        mfv.Body.disk(1.0, rigid=True),
+        friction=mfv.Friction.coulomb(0.5),
+        mesh=mfv.Mesh(nodes=61, half_width=0.12),
+        steps=[mfv.Step(normal_force=0.02), mfv.Step(moment=1e-5), mfv.Step(moment=0.0, tangential_force=0.003)],
+        output=mfv.Output(error_estimate=True),
+    )
+    estimate = mfv.run(tilted).error_estimate
+    assert "moment_error" not in estimate
+    assert 0.0 < estimate.rotation_error < 1e-3
+
+
+def test_the_largest_tension_of_a_history_contains_that_at_its_end() -> None:
+    """Random histories of both signs."""
+    random = np.random.default_rng(5)
+    for _ in seeds(10):
+        forces = [0.1 * float(x) for x in random.uniform(-0.9, 0.9, 6)]
+        scene = mfv.Scene(
+            mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.3),
+            mfv.Body.disk(1.0, rigid=True),
+            friction=mfv.Friction.coulomb(0.5),
+            mesh=mfv.Mesh(nodes=41),
+            steps=[mfv.Step(normal_force=0.2), *(mfv.Step(tangential_force=force) for force in forces)],
+        )
+        seen = mfv.run(scene).observables
+        assert seen.largest_lower_tension >= seen.lower_tension * (1.0 - 1e-9)
