@@ -160,7 +160,9 @@ def by_program(problem: Problem) -> mfv.Result:
 
 
 def compared(base: mfv.Result, other: mfv.Result, tolerance: float, change: Any = None, common: bool = False) -> Differences:
-    """Differences of two results; of runs that end early only whether they end alike."""
+    """Differences of two results; of runs that end early only whether they end alike, unless one is given up."""
+    if other.outcome == "interrupted":
+        return {}
     if base.outcome != other.outcome:
         return {f"outcome: {base.outcome} / {other.outcome}": np.inf}
     if base.outcome != "complete":
@@ -189,6 +191,8 @@ def _on_other_mesh(base: mfv.Result, other: mfv.Result, change: Any) -> bool:
 
 def _accuracy_differences(base: mfv.Result, other: mfv.Result, accuracy: float) -> Differences:
     """Tractions and dissipation beyond three times the accuracy."""
+    if other.outcome == "interrupted":
+        return {}
     if base.outcome != other.outcome:
         return {f"outcome: {base.outcome} / {other.outcome}": np.inf}
     if base.outcome != "complete" or len(base.mesh.x) != len(other.mesh.x):

@@ -177,6 +177,15 @@ contains
       if (has_interior(simulation%contact%model%scene%upper)) names = trim(names)//' largest_upper_tension'
    end function largest_tensions
 
+   !> The tensions at the end and, where that may be the largest one, over the history.
+   function tensions_at_end(simulation) result(names)
+      type(simulation_type), intent(in) :: simulation
+      character(len=72) :: names
+
+      names = tensions(simulation)
+      if (simulation%cycle_count == 0) names = largest_tensions(simulation)
+   end function tensions_at_end
+
    !> The contact patch with the fewest nodes among those that matter: that carry a part of the normal force, or the peak pressure.
    function poorest_patch(simulation) result(poorest)
       type(simulation_type), intent(in) :: simulation
@@ -399,9 +408,9 @@ contains
             edge = findloc(in_contact(state%status), .true., dim=1, back=side > 0)
             if (zone > 0 .and. zone < resolved_nodes) then
               if (merge(has_interior(model%scene%lower), has_interior(model%scene%upper), side*state%fields%shear(edge) < 0.0_wp)) &
-                  call add(adjustl(tensions(simulation)), zone, zone*model%width(edge))
+                  call add(adjustl(tensions_at_end(simulation)), zone, zone*model%width(edge))
             else if (hidden > 0.0_wp) then
-               call add('stick_ratio'//tensions(simulation), 0, hidden)
+               call add('stick_ratio'//tensions_at_end(simulation), 0, hidden)
             end if
          end associate
       end subroutine add_edge

@@ -288,6 +288,8 @@ contains
       type(patch_type), intent(in) :: patch
       integer, intent(in) :: side
       real(wp), intent(out) :: edge, error
+      !> In intervals from the outermost node.
+      real(wp), parameter :: before_end = 0.4_wp
       type(edge_samples_type) :: samples
       real(wp) :: distance
       logical :: solved
@@ -295,13 +297,16 @@ contains
 
       outermost = merge(patch%last, patch%first, side > 0)
       edge = model%arc(outermost) + 0.5_wp*side*model%width(outermost)
-      error = 0.0_wp
-      if (merge(patch%right_ends, patch%left_ends, side > 0)) return
       samples = sampled(model, state%fields%pressure, outermost, merge(patch%first, patch%last, side > 0))
       samples%is_regular = has_known_error(model, outermost, samples%number)
       call find_distance(straightened(samples, merge(patch%right_power, patch%left_power, side > 0)), distance, error, solved)
-      edge = model%arc(outermost) + side*model%width(outermost)*distance
       error = model%width(outermost)*error
+      if (merge(patch%right_ends, patch%left_ends, side > 0)) then
+         ! The pressure may vanish before the end of the surface.
+         if (.not. (solved .and. distance < before_end)) error = 0.0_wp
+         if (.not. error > 0.0_wp) return
+      end if
+      edge = model%arc(outermost) + side*model%width(outermost)*distance
    end subroutine find_contact_edge
 
    !> Number of neighbouring nodes that slip in one direction, from a node to the left (-1) or right (1).
