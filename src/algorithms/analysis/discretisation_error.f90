@@ -661,9 +661,9 @@ contains
       type(contact_state_type), intent(in) :: state
       logical, intent(in) :: has_receded
       type(patch_type), intent(inout) :: patches(:)
-      !> In intervals; grown_to_end where fewer than two nodes slip beside the stick zone; worn where the outermost node is, since the
-      !> pressure vanishes otherwise there; cornered over the number of nodes of the patch: around a corner in contact the pressure
-      !> has an error of the first order, which moves the edges in second order.
+      !> In intervals; grown_to_end where fewer than two nodes slip beside the stick zone; worn where the outermost node is, since
+      !> the pressure vanishes otherwise there; cornered over the number of nodes of the patch: around a corner in contact the
+      !> pressure has an error of the first order, which moves the edges in second order.
       real(wp), parameter :: coupled = 0.02_wp, receded = 0.5_wp, worn = 0.5_wp, grown = 0.2_wp, grown_to_end = 0.25_wp, &
                              cornered = 0.2_wp
       integer, parameter :: fewest_alike = 4
