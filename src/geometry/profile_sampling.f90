@@ -84,9 +84,9 @@ contains
    end function pressure_of_wave
 
    !> Largest jump of the slope, J, at points of a profile around `x` that intervals of a `width` (lengths) do not resolve; 0 of
-   !> other bodies. Where the slope jumps by J the pressure grows by m J/pi whenever intervals are shorter by a factor e (Johnson 1985,
-   !> section 5.2); piecewise cubics spread J over the distance of the points, and with shorter intervals it matters less, in second
-   !> order.
+   !> other bodies. Where the slope jumps by J the pressure grows by m J/pi whenever intervals are shorter by a factor e (Johnson
+   !> 1985, section 5.2); piecewise cubics spread J over the distance of the points, and with shorter intervals it matters less, in
+   !> second order.
    pure real(wp) function largest_jump(body, x, width) result(jump)
       class(geometry_type), intent(in) :: body
       real(wp), intent(in) :: x, width
