@@ -161,12 +161,8 @@ def by_program(problem: Problem) -> mfv.Result:
 
 def compared(base: mfv.Result, other: mfv.Result, tolerance: float, change: Any = None, common: bool = False) -> Differences:
     """Differences of two results; of runs that end early only whether they end alike, unless one is given up."""
-    if other.outcome == "interrupted":
-        return {}
-    if base.outcome != other.outcome:
-        return {f"outcome: {base.outcome} / {other.outcome}": np.inf}
-    if base.outcome != "complete":
-        return {}
+    if base.outcome != "complete" or other.outcome != "complete":
+        return _different_ends(base, other)
     given = {} if change is None else {"change": change}
     if _on_other_mesh(base, other, change):
         return {"mesh": np.inf}
@@ -174,6 +170,13 @@ def compared(base: mfv.Result, other: mfv.Result, tolerance: float, change: Any 
     # Which of two equal values is the largest, and what is counted in intervals, is decided by round-off.
     decided = ("tension_x", "pressure_x", "von_mises_x", "von_mises_y", "_row")
     return {path: error for path, error in found.items() if not path.endswith(decided)}
+
+
+def _different_ends(base: mfv.Result, other: mfv.Result) -> Differences:
+    """The outcomes of two runs if they differ, unless the other one is given up."""
+    if other.outcome in (base.outcome, "interrupted"):
+        return {}
+    return {f"outcome: {base.outcome} / {other.outcome}": np.inf}
 
 
 def without_extremes(found: Differences) -> Differences:
@@ -191,11 +194,9 @@ def _on_other_mesh(base: mfv.Result, other: mfv.Result, change: Any) -> bool:
 
 def _accuracy_differences(base: mfv.Result, other: mfv.Result, accuracy: float) -> Differences:
     """Tractions and dissipation beyond three times the accuracy."""
-    if other.outcome == "interrupted":
-        return {}
-    if base.outcome != other.outcome:
-        return {f"outcome: {base.outcome} / {other.outcome}": np.inf}
-    if base.outcome != "complete" or len(base.mesh.x) != len(other.mesh.x):
+    if base.outcome != "complete" or other.outcome != "complete":
+        return _different_ends(base, other)
+    if len(base.mesh.x) != len(other.mesh.x):
         return {}
     largest = max(np.max(other.state.pressure), np.max(np.abs(other.state.shear)))
     found = {f"state/{name}": np.max(np.abs(base.state[name] - other.state[name])) / largest for name in ("pressure", "shear")}

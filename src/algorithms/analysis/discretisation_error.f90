@@ -573,7 +573,7 @@ contains
       type(contact_state_type), intent(in) :: state
       real(wp) :: of_behaviour(0:error_place)
       type(patch_type), allocatable :: patches(:)
-      real(wp) :: contact, stick, length, largest, nodal, part(2)
+      real(wp) :: contact, stick, length, largest, nodal, at_jumps, part(2)
       integer :: i, points
 
       associate (model => simulation%contact%model)
@@ -599,13 +599,12 @@ contains
             end if
             call undersampling(simulation, .false., part(1), points)
             call undersampling(simulation, .true., part(2), points)
-            of_behaviour(error_pressure) = max(of_behaviour(error_pressure), maxval(part)*maxval(state%fields%pressure), &
-                                               pressure_at_jumps(model, state%fields%pressure))
+            at_jumps = pressure_at_jumps(model, state%fields%pressure)
+            of_behaviour(error_pressure) = max(of_behaviour(error_pressure), maxval(part)*maxval(state%fields%pressure), at_jumps)
             if (.not. largest > nodal) &
                of_behaviour(error_shear) = room_at_kink(abs(state%fields%shear), holds(state%status))
             of_behaviour(error_shear) = max(of_behaviour(error_shear), change_by_edges(model, state, patches, largest), &
-                                            pressure_at_jumps(model, state%fields%pressure)*largest/ &
-                                            max(maxval(state%fields%pressure), tiny(1.0_wp)))
+                                            at_jumps*largest/max(maxval(state%fields%pressure), tiny(1.0_wp)))
          end if
       end associate
    end function allowances_of_behaviours
@@ -639,13 +638,14 @@ contains
       type(contact_model_type), intent(in) :: model
       real(wp), intent(in) :: pressure(:)
       real(wp), parameter :: nearly = 0.9_wp
-      real(wp) :: jump
+      real(wp) :: jump, least
       integer :: i
 
       jump = 0.0_wp
+      least = nearly*maxval(pressure)
       if (model%scene%lower%is_sampled() .or. model%scene%upper%is_sampled()) then
          do i = 1, size(pressure)
-            if (pressure(i) < nearly*maxval(pressure)) cycle
+            if (pressure(i) < least) cycle
             jump = max(jump, largest_jump(model%scene%lower, model%x(i), model%width(i)) + &
                        largest_jump(model%scene%upper, model%x(i), model%width(i)))
          end do

@@ -300,13 +300,13 @@ contains
       samples = sampled(model, state%fields%pressure, outermost, merge(patch%first, patch%last, side > 0))
       samples%is_regular = has_known_error(model, outermost, samples%number)
       call find_distance(straightened(samples, merge(patch%right_power, patch%left_power, side > 0)), distance, error, solved)
-      error = model%width(outermost)*error
-      if (merge(patch%right_ends, patch%left_ends, side > 0)) then
-         ! The pressure may vanish before the end of the surface.
-         if (.not. (solved .and. distance < before_end)) error = 0.0_wp
-         if (.not. error > 0.0_wp) return
+      if (merge(patch%right_ends, patch%left_ends, side > 0) .and. .not. (solved .and. distance < before_end)) then
+         ! The end of the surface: the pressure does not vanish before it.
+         error = 0.0_wp
+         return
       end if
       edge = model%arc(outermost) + side*model%width(outermost)*distance
+      error = model%width(outermost)*error
    end subroutine find_contact_edge
 
    !> Number of neighbouring nodes that slip in one direction, from a node to the left (-1) or right (1).

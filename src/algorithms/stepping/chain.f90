@@ -10,10 +10,10 @@ module mfv_chain
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path, only: contact_path_type, segment_type
    use mfv_contact_state, only: contact_state_type
+   use mfv_frictionless, only: find_statuses_on_mesh
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_count, motion_approach, motion_shift, control_force
    use mfv_node_status
-   use mfv_frictionless, only: find_statuses_on_mesh
    implicit none
    private
    public :: chain_type, make_chain, add_samples, find_rates_after, error_at_start

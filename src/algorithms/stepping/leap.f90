@@ -23,12 +23,12 @@ module mfv_leap
    use mfv_contact_state, only: contact_state_type
    use mfv_error, only: error_type
    use mfv_first_violation, only: apply_by_violations
+   use mfv_frictionless, only: apply_directly, before_separation, lacks_support, find_statuses_on_mesh, finish_large_increment, &
+                               grow_mesh, subsegment
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_count, motion_approach, motion_shift
    use mfv_node_status
    use mfv_observer, only: observer_type
-   use mfv_frictionless, only: apply_directly, before_separation, lacks_support, find_statuses_on_mesh, finish_large_increment, &
-                               grow_mesh, subsegment
    use mfv_tolerances, only: rounding, significant, visible
    implicit none
    private

@@ -12,6 +12,7 @@ module mfv_simulation
    use mfv_contact_path, only: contact_path_type, new_contact_path, path_position_type, saved_path_type, segment_type
    use mfv_conventional, only: apply_conventionally
    use mfv_error_bar, only: error_estimate_type
+   use mfv_frictionless, only: apply_directly
    use mfv_kinds, only: wp
    use mfv_load_extremes, only: add_estimate, candidate_count, candidate_tension, candidate_von_mises, load_extremes_type, &
                                 most_rows, over_cycle, &
@@ -27,7 +28,6 @@ module mfv_simulation
    use mfv_state_interior, only: find_largest_tension, find_largest_von_mises, surface_stress_at
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, MFV_INTERRUPTED, MFV_NO_CONTINUATION, MFV_SEPARATED
    use mfv_stress_search, only: largest_type
-   use mfv_frictionless, only: apply_directly
    use mfv_wear_block, only: find_wear_block, wear_block_type, widened, work_of_wear
    use mfv_strings, only: to_text
    implicit none
