@@ -14,7 +14,7 @@ module mfv_element_tree
    public :: element_tree_type, new_element_tree, new_straight_tree, last_not_above
 
    !> Most elements of a leaf; radii beyond which a group acts through its moments; the highest moment.
-   integer, parameter :: leaf_size = 12
+   integer, parameter :: leaf_size = 32
    real(wp), parameter :: distant = 3.0_wp
    integer, parameter :: most_moments = ceiling(digits(1.0_wp)*log(2.0_wp)/log(distant))
    !> Most groups that wait for their turn: one for each level of the tree, at most.
@@ -196,21 +196,25 @@ contains
       complex(wp), intent(in) :: moments(0:), shift
       real(wp), intent(in) :: shrink
       complex(wp) :: shifted(0:most_moments)
-      logical :: straight
+      real(wp) :: along
       integer :: i, k
 
-      straight = .not. abs(aimag(shift)) > 0.0_wp
       shifted = [(moments(k)*shrink**k, k=0, most_moments)]
+      along = real(shift, wp)
       ! Binomial sums, in place; along a straight surface with real numbers.
-      do i = 1, most_moments
-         do k = most_moments, i, -1
-            if (straight) then
-               shifted(k) = shifted(k) + real(shift, wp)*shifted(k - 1)
-            else
+      if (abs(aimag(shift)) > 0.0_wp) then
+         do i = 1, most_moments
+            do k = most_moments, i, -1
                shifted(k) = shifted(k) + shift*shifted(k - 1)
-            end if
+            end do
          end do
-      end do
+      else
+         do i = 1, most_moments
+            do k = most_moments, i, -1
+               shifted(k) = shifted(k) + along*shifted(k - 1)
+            end do
+         end do
+      end if
    end function about_other
 
    !> Number of leaves.
