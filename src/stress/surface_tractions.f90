@@ -138,7 +138,8 @@ contains
       elements%singular = any(parts%singular)
    end subroutine find_traction_elements
 
-   !> Contact zone of each loaded node, 0 without load: the nearest; nodes outside all zones form new ones.
+   !> Contact zone of each loaded node, 0 without load: the nearest; nodes outside all zones, or with a node without load between,
+   !> form new ones.
    subroutine assign_nodes(arc, width, loaded, zones, edges, sharp, owner)
       real(wp), intent(in) :: arc(:), width(:)
       logical, intent(in) :: loaded(:)
@@ -158,7 +159,7 @@ contains
          if (size(edges, 2) > 0) nearest = minloc(max(edges(1, :) - arc(i), arc(i) - edges(2, :)), dim=1)
          distance = huge(1.0_wp)
          if (nearest > 0) distance = max(edges(1, nearest) - arc(i), arc(i) - edges(2, nearest))
-         if (distance > 0.75_wp*width(i)) then
+         if (distance > 0.75_wp*width(i) .or. (distance > 0.5_wp*width(i) .and. is_apart())) then
             edges = reshape([edges, arc(i) - 0.5_wp*width(i), arc(i) + 0.5_wp*width(i)], [2, size(edges, 2) + 1])
             sharp = reshape([sharp, .false., .false.], [2, size(edges, 2)])
             nearest = size(edges, 2)
@@ -167,6 +168,17 @@ contains
          end if
          owner(i) = nearest
       end do
+
+   contains
+
+      !> Whether the next node towards the nearest zone has no load.
+      pure logical function is_apart()
+         integer :: next
+
+         next = i + merge(1, -1, arc(i) < edges(1, nearest))
+         is_apart = .true.
+         if (next >= 1 .and. next <= size(loaded)) is_apart = .not. loaded(next)
+      end function is_apart
    end subroutine assign_nodes
 
    !> Fit a patch to its nodes and edges.
