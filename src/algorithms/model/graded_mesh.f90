@@ -93,45 +93,63 @@ contains
    end subroutine find_pieces
 
    !> The points that are used, increasing: not beyond the ends, not closer to each other than the smallest interval, and not too
-   !> many. `points`: changed to the middles of those that are too close.
+   !> many.
    pure subroutine choose_points(points, rank, left, right, nodes, used)
-      real(wp), intent(inout) :: points(:)
-      real(wp), intent(in) :: left, right
+      real(wp), intent(in) :: points(:), left, right
       integer, intent(in) :: rank(:), nodes
       real(wp), allocatable, intent(out) :: used(:)
       type(piece_type), allocatable :: pieces(:)
-      logical, allocatable :: keep(:)
-      integer, allocatable :: order(:)
+      integer, allocatable :: order(:), ranks(:)
       real(wp), parameter :: alike = 1.0e-3_wp
       real(wp), allocatable :: apart(:)
       real(wp) :: smallest
-      integer :: i
 
-      keep = points >= left .and. points <= right
-      do
-         call sort(points, keep, order)
-         used = points(order)
-         if (size(used) < 2) return
+      order = sorted(points, points >= left .and. points <= right)
+      used = points(order)
+      ranks = rank(order)
+      do while (size(used) > 1)
          call find_pieces(used, left, right, pieces)
          smallest = (sum(weight(pieces, 1.0_wp/grading))/nodes)**grading
          apart = used(2:) - used(:size(used) - 1)
          if (minval(apart) > smallest .and. size(used)*fewest_intervals <= nodes) return
          ! Pairs that are equally close together, so that the mesh of a symmetric contact is symmetric.
-         do i = 1, size(apart)
-            if (apart(i) > (1.0_wp + alike)*minval(apart)) cycle
-            associate (here => order(i), next => order(i + 1))
-               if (rank(here) == rank(next)) points(next) = 0.5_wp*(points(here) + points(next))
-               keep(merge(next, here, rank(next) > rank(here))) = .false.
-            end associate
-         end do
+         call join_pairs(apart <= (1.0_wp + alike)*minval(apart), used, ranks)
       end do
    end subroutine choose_points
 
+   !> Replace neighbouring points, of which `joined` (points - 1) are pairs, by one point for each pair, which in a row of pairs
+   !> does not depend on the side from which it is read.
+   pure subroutine join_pairs(joined, points, ranks)
+      logical, intent(in) :: joined(:)
+      real(wp), allocatable, intent(inout) :: points(:)
+      integer, allocatable, intent(inout) :: ranks(:)
+      real(wp) :: place(2*size(points))
+      integer :: rank(2*size(points)), i, n
+      logical :: padded(0:size(points))
+
+      padded = [.false., joined, .false.]
+      n = 0
+      do i = 1, size(points)
+         if (padded(i)) then
+            n = n + 1
+            rank(n) = minval(ranks(i:i + 1))
+            place(n) = points(i + minloc(ranks(i:i + 1), dim=1) - 1)
+            if (ranks(i) == ranks(i + 1)) place(n) = 0.5_wp*(points(i) + points(i + 1))
+         else if (.not. padded(i - 1)) then
+            n = n + 1
+            rank(n) = ranks(i)
+            place(n) = points(i)
+         end if
+      end do
+      points = place(:n)
+      ranks = rank(:n)
+   end subroutine join_pairs
+
    !> Indices of the values to keep, by value.
-   pure subroutine sort(values, keep, order)
+   pure function sorted(values, keep) result(order)
       real(wp), intent(in) :: values(:)
       logical, intent(in) :: keep(:)
-      integer, allocatable, intent(out) :: order(:)
+      integer, allocatable :: order(:)
       logical :: left(size(values))
       integer :: i, next
 
@@ -142,6 +160,6 @@ contains
          order(i) = next
          left(next) = .false.
       end do
-   end subroutine sort
+   end function sorted
 
 end module mfv_graded_mesh

@@ -2,8 +2,9 @@
 !> that are violated at its end.
 !>
 !> `event` stepping obtains the rates from the linear solve itself. `nominal` stepping is that of the dissertation (section 2.3):
-!> it solves a trial load step dL0, finds the first violation by interpolation (2.3 to 2.5), solves again there, and finds a wrong
-!> slip direction by bisection. Both give the same states with different numbers of linear solves.
+!> it solves a trial load step dL0, finds the first violation by interpolation (2.3 to 2.5) and solves again there. Both give the same
+!> states with different numbers of linear solves. The dissertation finds a wrong slip direction by bisection; at fixed statuses
+!> rates are constant, so that it is wrong in every trial step, and rates of shorter steps only have more round-off.
 !>
 !> If friction is not linear (Dahl, weakening), a predictor with tangents is followed by a corrector (Newton) until the friction
 !> lines agree with the end of the increment; for Dahl's law this is the implicit midpoint rule, of second order. The difference of
@@ -298,21 +299,16 @@ contains
       real(wp), intent(in) :: length, rate_tolerance
       logical, intent(in) :: relaxing
       type(increment_type), intent(inout) :: increment
-      real(wp) :: trial
+      real(wp), parameter :: shortest_secant = visible
+      real(wp) :: longest, trial
 
-      trial = merge(1.0_wp, length, relaxing)
+      longest = merge(1.0_wp, length, relaxing)
+      ! The rest of a segment may be too short for rates that are differences.
+      trial = max(longest, shortest_secant)
       call solve_trial(path, constraints, trial, increment)
       if (increment%singular) return
-      call search(path, rate_tolerance, trial, increment)
-      ! Slip rates are constant between events: bisection shows whether a wrong direction is wrong from the start.
-      do while (increment%step <= shortest_step(path) .and. any(increment%violations%kind == event_stick) .and. &
-                trial > visible*length)
-         trial = 0.5_wp*trial
-         call solve_trial(path, constraints, trial, increment)
-         if (increment%singular) return
-         call search(path, rate_tolerance, trial, increment)
-      end do
-      if (increment%step <= shortest_step(path) .or. .not. increment%ends_in_event) return
+      call search(path, rate_tolerance, longest, increment)
+      if (increment%step < shortest_secant .or. .not. increment%ends_in_event) return
       if (increment%step < trial) call solve_trial(path, constraints, increment%step, increment)
    end subroutine nominal_increment
 
