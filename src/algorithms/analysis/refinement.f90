@@ -13,6 +13,7 @@ module mfv_refinement
    use mfv_scene_indenter, only: indenter_of
    use mfv_simulation, only: history_none, new_simulation, simulation_type, states_reversals
    use mfv_status, only: MFV_COMPLETE, MFV_INTERRUPTED, MFV_MESH_EXCEEDED
+   use mfv_tolerances, only: visible
    use mfv_zone_edges, only: find_patches, patch_type, zone_type
    implicit none
    private
@@ -177,18 +178,23 @@ contains
       end do
    end subroutine find_edges
 
-   !> Replace contact edges by those of the first pass that are very near, relative to the distance of the outermost ones.
+   !> Replace contact edges by those of the first pass that are very near, relative to the distance of the outermost ones, but not
+   !> one in the middle between two of them: round-off must not decide.
    subroutine take_contact(first, edges)
       type(edges_type), intent(in) :: first
       type(edges_type), intent(inout) :: edges
       real(wp), parameter :: very_near = 2.0e-3_wp
-      integer :: i, nearest
+      real(wp) :: away(size(first%points)), near
+      integer :: i, side
+      logical :: found(2)
 
+      near = very_near*(first%right - first%left)
       do i = 1, size(edges%points)
          if (modulo(edges%rank(i), 2) /= 0) cycle
-         nearest = minloc(abs(first%points - edges%points(i)), dim=1, mask=modulo(first%rank, 2) == 0)
-         if (abs(first%points(nearest) - edges%points(i)) <= very_near*(first%right - first%left)) &
-            edges%points(i) = first%points(nearest)
+         away = first%points - edges%points(i)
+         where (modulo(first%rank, 2) /= 0) away = huge(near)
+         found = [(minval(side*away, mask=side*away >= 0.0_wp) <= (1.0_wp + visible)*min(near, minval(abs(away))), side=-1, 1, 2)]
+         if (found(1) .neqv. found(2)) edges%points(i) = first%points(minloc(abs(away), dim=1))
       end do
    end subroutine take_contact
 
