@@ -221,29 +221,8 @@ contains
       extra = part*(edges%right - edges%left)
       most = huge(1.0_wp)
       if (scene%mesh%half_width > 0.0_wp) most = scene%mesh%half_width
-      if (.not. edges%left_ends) edges%left = max(last_touchable(scene, edges%left, edges%left - extra), -most)
-      if (.not. edges%right_ends) edges%right = min(last_touchable(scene, edges%right, edges%right + extra), most)
+      if (.not. edges%left_ends) edges%left = max(scene%last_touchable(edges%left, edges%left - extra), -most)
+      if (.not. edges%right_ends) edges%right = min(scene%last_touchable(edges%right, edges%right + extra), most)
    end subroutine limit
-
-   !> `outside`, or the end of the surface between it and `inside` (by bisection); arc lengths.
-   real(wp) function last_touchable(scene, inside, outside) result(last)
-      type(scene_type), intent(in) :: scene
-      real(wp), intent(in) :: inside, outside
-      real(wp) :: beyond, middle
-      integer :: i
-
-      last = outside
-      if (scene%touchable(outside)) return
-      last = inside
-      beyond = outside
-      do i = 1, digits(1.0_wp)
-         middle = 0.5_wp*(last + beyond)
-         if (scene%touchable(middle)) then
-            last = middle
-         else
-            beyond = middle
-         end if
-      end do
-   end function last_touchable
 
 end module mfv_refinement

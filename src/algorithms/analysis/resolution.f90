@@ -13,7 +13,8 @@ module mfv_resolution
    use mfv_simulation, only: simulation_type
    use mfv_slip_zones, only: contact_interval, hidden_width_at_edge, needed_mesh, nodes_at_edge, resolved_nodes, slip_record_type
    use mfv_strings, only: has_word, to_text
-   use mfv_zone_edges, only: find_zone_edges, zone_edges_type, zone_type, zones_of
+   use mfv_zone_edges, only: find_patches, find_zone_edges, patch_type, rises_at_end, zone_edges_type, zone_type, &
+                             zones_of
    implicit none
    private
    public :: find_unresolved, unresolved_type, add_unresolved, is_unresolved, all_quantities, undersampling, poorest_patch, &
@@ -43,6 +44,7 @@ contains
          call check_rounded_edges(simulation, .false., unresolved)
          call check_rounded_edges(simulation, .true., unresolved)
       end if
+      call check_surface_ends(simulation, unresolved)
       call check_slip_zones(simulation, unresolved)
       call check_stick_zones(simulation, unresolved)
       call check_shakedown(simulation, unresolved)
@@ -332,6 +334,23 @@ contains
                              trim(needed_mesh(model, state, max(width - edge_uncertainty*interval, 0.5_wp*width), resolved_nodes)))
       end associate
    end subroutine check_rounded_edges
+
+   !> The end of a surface that is no corner by design: the pressure there has no limit.
+   subroutine check_surface_ends(simulation, unresolved)
+      type(simulation_type), intent(in) :: simulation
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
+      type(patch_type), allocatable :: patches(:)
+      logical :: now, before
+
+      before = simulation%extremes%at_end
+      if (simulation%cycle_count > 0) before = before .or. simulation%cycles(simulation%cycle_count)%extremes%at_end
+      call find_patches(simulation%contact%model, simulation%contact%state, patches)
+      now = rises_at_end(simulation%contact%model, simulation%contact%state, patches)
+      if (now .or. before) call add_unresolved(unresolved, trim(merge('peak_pressure peak_shear extremes', &
+                                                                      'extremes                         ', now)), &
+                                               'the contact reaches the end of a surface, where the pressure has no limit', &
+                                               'extend the surface, or round its end')
+   end subroutine check_surface_ends
 
    !> Slip zones with too few nodes.
    subroutine check_slip_zones(simulation, unresolved)

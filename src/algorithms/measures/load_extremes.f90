@@ -16,7 +16,7 @@ module mfv_load_extremes
    use mfv_motions, only: bulk_motions, motion_approach, motion_count
    use mfv_node_status, only: in_contact
    use mfv_tolerances, only: significant, visible
-   use mfv_zone_edges, only: find_patches, largest_shear, outermost_edges, patch_type, zone_edges_type
+   use mfv_zone_edges, only: find_patches, largest_shear, outermost_edges, patch_type, rises_at_end, zone_edges_type
    implicit none
    private
    public :: extreme_type, load_extremes_type, slip_range_type, candidate_count, candidate_tension, candidate_von_mises, &
@@ -54,6 +54,8 @@ module mfv_load_extremes
       !> Rows that may have these, 0 for none, and the estimates in them, force/length^2.
       integer :: row(most_rows, candidate_count) = 0
       real(wp) :: estimate(most_rows, candidate_count) = -1.0_wp
+      !> Whether the largest pressure of a finer mesh may be at the end of a surface, without limit.
+      logical :: at_end = .false.
       !> The last row, and the motions of its state.
       integer :: last_row = 0
       real(wp) :: last_motion(motion_count) = 0.0_wp
@@ -128,6 +130,7 @@ contains
       self%last_motion = state%fields%motion
       call find_patches(model, state, patches)
       edges = outermost_edges(patches)
+      self%at_end = self%at_end .or. rises_at_end(model, state, patches)
    if (edges%contact) call self%pressure%raise(maxval(state%fields%pressure), row, place_of_largest(model%x, state%fields%pressure))
       if (model%tangential) then
          do i = 1, size(patches)

@@ -24,7 +24,7 @@ module mfv_zone_edges
    implicit none
    private
    public :: zone_type, patch_type, zone_edges_type, find_patches, find_zone_edges, outermost_edges, largest_shear, &
-             zones_of, ends_with_body, slipping_run
+             zones_of, ends_with_body, rises_at_end, slipping_run
 
    !> A zone of neighbouring nodes, from `first` to `last`, and its edges: arc lengths from the origin of x, positive to the
    !> right; and the uncertainty of these edges, lengths.
@@ -288,26 +288,61 @@ contains
       type(patch_type), intent(in) :: patch
       integer, intent(in) :: side
       real(wp), intent(out) :: edge, error
-      !> In intervals from the outermost node.
-      real(wp), parameter :: before_end = 0.4_wp
+      !> The pressure vanishes at the end of the surface if not farther before it than this, in intervals.
+      real(wp), parameter :: at_end = 0.1_wp
       type(edge_samples_type) :: samples
-      real(wp) :: distance
+      real(wp) :: distance, last
       logical :: solved
       integer :: outermost
 
       outermost = merge(patch%last, patch%first, side > 0)
-      edge = model%arc(outermost) + 0.5_wp*side*model%width(outermost)
       samples = sampled(model, state%fields%pressure, outermost, merge(patch%first, patch%last, side > 0))
       samples%is_regular = has_known_error(model, outermost, samples%number)
       call find_distance(straightened(samples, merge(patch%right_power, patch%left_power, side > 0)), distance, error, solved)
-      if (merge(patch%right_ends, patch%left_ends, side > 0) .and. .not. (solved .and. distance < before_end)) then
-         ! The end of the surface: the pressure does not vanish before it.
-         error = 0.0_wp
-         return
-      end if
-      edge = model%arc(outermost) + side*model%width(outermost)*distance
-      error = model%width(outermost)*error
+      associate (arc => model%arc(outermost), width => model%width(outermost))
+         if (.not. model%scene%touchable(arc + side*max(distance, 0.5_wp*(1.0_wp + visible))*width)) then
+            last = abs(model%scene%last_touchable(arc, arc + side*max(distance, 1.0_wp)*width) - arc)/width
+            if (.not. (solved .and. distance < last - at_end)) then
+               ! The end of the surface: the pressure does not vanish before it. An interval should end there.
+               distance = last
+               error = abs(last - 0.5_wp)
+               if (error < visible) then
+                  distance = 0.5_wp
+                  error = 0.0_wp
+               end if
+            end if
+         end if
+         edge = arc + side*width*distance
+         error = width*error
+      end associate
    end subroutine find_contact_edge
+
+   !> Whether the largest pressure of a finer mesh is probably at the end of a surface that is no corner by design, where it grows as
+   !> the inverse root of the interval.
+   pure logical function rises_at_end(model, state, patches)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      type(patch_type), intent(in) :: patches(:)
+      real(wp), parameter :: growth = 3.0_wp
+      integer :: i
+
+      rises_at_end = .false.
+      if (model%scene%lower%has_sharp_ends() .or. model%scene%upper%has_sharp_ends()) return
+      do i = 1, size(patches)
+         rises_at_end = rises_at_end .or. at_end(patches(i)%left, patches(i)%first, -1) .or. &
+                        at_end(patches(i)%right, patches(i)%last, 1)
+      end do
+
+   contains
+
+      pure logical function at_end(edge, node, side)
+         real(wp), intent(in) :: edge
+         integer, intent(in) :: node, side
+
+         at_end = growth*state%fields%pressure(node) > maxval(state%fields%pressure) .and. &
+                  .not. model%scene%touchable(edge + side*visible*model%width(node))
+      end function at_end
+   end function rises_at_end
 
    !> Number of neighbouring nodes that slip in one direction, from a node to the left (-1) or right (1).
    pure integer function slipping_run(state, from, direction) result(nodes)

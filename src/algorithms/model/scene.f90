@@ -152,6 +152,7 @@ module mfv_scene
       procedure :: arc_radius
       procedure :: x_of_arc
       procedure :: touchable
+      procedure :: last_touchable
       procedure :: can_have_bulk_stress
       procedure :: interior
    end type scene_type
@@ -393,6 +394,27 @@ contains
       end if
       if (radius > 0.0_wp) touchable = touchable .and. abs(arc) < 0.5_wp*pi*radius
    end function touchable
+
+   !> `outside`, or the end of the surface between it and `inside` (by bisection); arc lengths.
+   pure real(wp) function last_touchable(self, inside, outside) result(last)
+      class(scene_type), intent(in) :: self
+      real(wp), intent(in) :: inside, outside
+      real(wp) :: beyond, middle
+      integer :: i
+
+      last = outside
+      if (self%touchable(outside)) return
+      last = inside
+      beyond = outside
+      do i = 1, digits(1.0_wp)
+         middle = 0.5_wp*(last + beyond)
+         if (self%touchable(middle)) then
+            last = middle
+         else
+            beyond = middle
+         end if
+      end do
+   end function last_touchable
 
    !> Whether the lower or `upper` body can have a bulk stress: an elastic body that deforms like a half-plane.
    pure logical function can_have_bulk_stress(self, upper)
