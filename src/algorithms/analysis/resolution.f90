@@ -409,7 +409,8 @@ contains
          if (slip%is_coarse_now(interval)) then
             call add(quantities, slip%nodes_now, slip%width_now)
          else if (slip%nodes_now == 0 .and. slip%width_now > 0.0_wp) then
-            call add(adjustl(largest_tensions(simulation)), 0, slip%width_now)
+            ! The largest shear may be at the edge of the slip zone too.
+            call add('peak_shear largest_shear'//largest_tensions(simulation), 0, slip%width_now)
          end if
       end subroutine add_zones
 

@@ -241,17 +241,21 @@ contains
 
    contains
 
-      !> The friction limit at the `edge` between the outermost node of a stick zone and the next one on `side`, if that slips.
+      !> The friction limit at the `edge` of a stick zone, if the node beyond its outermost one on `side` slips: between these two, or
+      !> between the outermost one and the next inside.
       subroutine compare(edge, outermost, side)
          real(wp), intent(in) :: edge
          integer, intent(in) :: outermost, side
          real(wp) :: part, limit
+         integer :: other
 
          associate (next => outermost + side, pressure => state%fields%pressure)
             if (next < patch%first .or. next > patch%last) return
             if (.not. slips(state%status(next))) return
-            part = min(max((edge - model%arc(outermost))/(model%arc(next) - model%arc(outermost)), 0.0_wp), 1.0_wp)
-            limit = model%kinetic_friction(next)*(pressure(outermost) + part*(pressure(next) - pressure(outermost)))
+            other = merge(next, outermost - side, side*(edge - model%arc(outermost)) > 0.0_wp)
+            if (other < patch%first .or. other > patch%last) return
+            part = min(max((edge - model%arc(outermost))/(model%arc(other) - model%arc(outermost)), 0.0_wp), 1.0_wp)
+            limit = model%kinetic_friction(next)*(pressure(outermost) + part*(pressure(other) - pressure(outermost)))
             if (.not. limit > largest*(1.0_wp + certified)) return
             largest = limit
             if (present(arc)) arc = edge
