@@ -128,9 +128,11 @@ contains
    elemental real(wp) function loop_area(self, motion)
       class(cycle_type), intent(in) :: self
       integer, intent(in) :: motion
+      real(wp) :: round_off
 
       loop_area = ieee_value(1.0_wp, ieee_quiet_nan)
-      if (self%return%work_error - self%start%work_error > max(self%dissipation(), 0.0_wp)) return
+      round_off = significant*sum(max(abs(self%lowest_force), abs(self%highest_force))*(self%highest_motion - self%lowest_motion))
+      if (self%return%work_error - self%start%work_error > max(self%dissipation(), 0.0_wp) + round_off) return
       associate (from => self%return, to => self%start)
          loop_area = (from%work(motion) - to%work(motion)) &
                      + 0.5_wp*(from%force(motion) + to%force(motion))*(to%motion(motion) - from%motion(motion))
