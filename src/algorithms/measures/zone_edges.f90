@@ -295,16 +295,20 @@ contains
       !> The pressure vanishes at the end of the surface if not farther before it than this, in intervals.
       real(wp), parameter :: at_end = 0.1_wp
       type(edge_samples_type) :: samples
-      real(wp) :: distance, last
-      logical :: solved
+      real(wp) :: distance, last, reach
+      logical :: solved, rises
       integer :: outermost
 
       outermost = merge(patch%last, patch%first, side > 0)
       samples = sampled(model, state%fields%pressure, outermost, merge(patch%first, patch%last, side > 0))
       samples%is_regular = has_known_error(model, outermost, samples%number)
       call find_distance(straightened(samples, merge(patch%right_power, patch%left_power, side > 0)), distance, error, solved)
+      rises = .false.
+      if (patch%last > patch%first) rises = state%fields%pressure(outermost) >= state%fields%pressure(outermost - side)
       associate (arc => model%arc(outermost), width => model%width(outermost))
-         if (.not. model%scene%touchable(arc + side*max(distance, 0.5_wp*(1.0_wp + visible))*width)) then
+         reach = max(distance, 0.5_wp*(1.0_wp + visible))
+         if (rises) reach = max(distance, 1.0_wp)
+         if (.not. model%scene%touchable(arc + side*reach*width)) then
             last = abs(model%scene%last_touchable(arc, arc + side*max(distance, 1.0_wp)*width) - arc)/width
             if (.not. (solved .and. distance < last - at_end)) then
                ! The end of the surface: the pressure does not vanish before it. An interval should end there.
