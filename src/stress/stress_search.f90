@@ -147,13 +147,15 @@ contains
    function candidates(interior) result(places)
       type(interior_type), intent(in) :: interior
       real(wp), allocatable :: places(:)
-      real(wp), allocatable :: inner(:), inside(:), beside(:)
+      real(wp), allocatable :: edges(:), inner(:), inside(:), beside(:)
       integer, parameter :: steps = 10
       real(wp) :: farthest, nearest
       integer :: i
 
-      allocate (inner, source=merged(interior%zone_edges(most_between=16), interior%kinks()))
-      ! Two points that differ by round-off would leave one side of a cusp out of the search.
+      ! Two points that differ by round-off would leave one side of a cusp out of the search; it is at the zone edge.
+      allocate (inner, source=interior%kinks())
+      allocate (edges, source=interior%zone_edges(most_between=16))
+      inner = merged(edges, pack(inner, [(minval(abs(edges - inner(i))) > certified*interior%half_width(), i=1, size(inner))]))
       allocate (inside, source=pack(inner, [.true., inner(2:) - inner(:size(inner) - 1) > certified*interior%half_width()]))
       nearest = 1.0e-3_wp*interior%half_width()
       farthest = 4.0_wp*interior%half_width()

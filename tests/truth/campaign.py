@@ -16,7 +16,7 @@ from .generate import describe, problem
 from .problem import Problem
 from .relations import relations
 from .truth import truth_of
-from .verdict import WORDS, judge, public_name
+from .verdict import RIGHT, WORDS, flagged_quantities, judge, public_name
 
 #: Relations tried with one problem.
 RELATIONS_OF_ONE = 2
@@ -63,12 +63,19 @@ def record_of(made: Problem, seed: int) -> dict[str, Any]:
 
 
 def _related(made: Problem, base: mfv.Result, seed: int) -> dict[str, dict[str, float]]:
+    """What differs in some relations. What a warning calls not resolved may differ by what counts as right."""
+    patterns = flagged_quantities(base)
+
+    def counts(path: str, difference: float) -> bool:
+        flagged = "/" in path and any(re.fullmatch(pattern, public_name(path)) for pattern in patterns)
+        return difference > RIGHT or not flagged
+
     possible = relations(made, base, seed)
     names = list(np.random.default_rng(seed + 1).permutation(list(possible)))[:RELATIONS_OF_ONE]
     found = {}
     for name in names:
         try:
-            found[str(name)] = possible[name]()
+            found[str(name)] = {path: difference for path, difference in possible[name]().items() if counts(path, difference)}
         except (errors.MfvError, RuntimeError) as error:
             found[str(name)] = {f"error: {error}": math.inf}
     return found
