@@ -46,6 +46,7 @@ contains
       end if
       call check_surface_ends(simulation, unresolved)
       call check_slip_zones(simulation, unresolved)
+      call check_largest_shear(simulation, unresolved)
       call check_stick_zones(simulation, unresolved)
       call check_shakedown(simulation, unresolved)
       call check_rolling(simulation, unresolved)
@@ -446,6 +447,25 @@ contains
          width = min(width, its_width)
       end subroutine add
    end subroutine check_slip_zones
+
+   !> A largest shear at the outermost node of a patch: it lies in the last interval, where the pressure vanishes and limits it. At
+   !> the end of a surface it has no limit, which its error bar says.
+   subroutine check_largest_shear(simulation, unresolved)
+      type(simulation_type), intent(in) :: simulation
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
+      type(zone_type), allocatable :: zones(:)
+      integer :: node
+
+      associate (model => simulation%contact%model, state => simulation%contact%state)
+         if (.not. model%tangential .or. model%scene%lower%has_sharp_ends() .or. model%scene%upper%has_sharp_ends()) return
+         node = maxloc(abs(state%fields%shear), dim=1)
+         if (.not. abs(state%fields%shear(node)) > 0.0_wp) return
+         zones = zones_of(in_contact(state%status))
+         if (.not. any(zones%first == node .or. zones%last == node)) return
+         call add_unresolved(unresolved, 'peak_shear largest_shear', 'the largest shear is in the outermost interval of a '// &
+                             'contact, near x = '//to_text(model%x(node), 4), "use refine='edges' in &mesh, or more nodes")
+      end associate
+   end subroutine check_largest_shear
 
    !> Stick zones without a node, between neighbouring nodes that slip in opposite directions, which change their number. (A maximum
    !> of the shear near the friction limit inside a stick zone is no sign of a slip zone: former edges have one on any mesh.) And

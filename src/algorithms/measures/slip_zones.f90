@@ -162,12 +162,12 @@ contains
 
       width = 0.0_wp
       if (model%scene%coupling == coupling_full .and. abs(model%scene%beta()) > similar) return
-      call find_zone_edges(model, state, edges)
       edge = findloc(in_contact(state%status), .true., dim=1, back=side > 0)
       node = [(edge - side*i, i=0, last)]
-      if (edges%patches /= 1 .or. minval(node) < 1 .or. maxval(node) > size(state%status)) return
+      if (minval(node) < 1 .or. maxval(node) > size(state%status)) return
       if (.not. model%scene%friction%law%sticks .or. .not. all(holds(state%status(node)))) return
-      if (ends_with_body(model, edge, side)) return
+      if (size(zones_of(in_contact(state%status))) /= 1 .or. ends_with_body(model, edge, side)) return
+      call find_zone_edges(model, state, edges)
       associate (inner => node(first:))
          distance = abs(model%arc(inner) - merge(edges%contact_left, edges%contact_right, side < 0))
          times_ratio = distance*state%fields%shear(inner)/(model%static_friction(inner)*state%fields%pressure(inner))

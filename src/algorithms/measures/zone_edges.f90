@@ -241,8 +241,8 @@ contains
 
    contains
 
-      !> The friction limit at the `edge` of a stick zone, if the node beyond its outermost one on `side` slips: between these two, or
-      !> between the outermost one and the next inside.
+      !> The friction limit at the `edge` of a stick zone, if the node beyond its outermost one on `side` slips: between these two,
+      !> or between the outermost one and the next inside.
       subroutine compare(edge, outermost, side)
          real(wp), intent(in) :: edge
          integer, intent(in) :: outermost, side
@@ -325,8 +325,8 @@ contains
       end associate
    end subroutine find_contact_edge
 
-   !> Whether the largest pressure of a finer mesh is probably at the end of a surface that is no corner by design, where it grows as
-   !> the inverse root of the interval.
+   !> Whether the largest pressure of a finer mesh is probably at the end of a surface that is no corner by design, where it grows
+   !> as the inverse root of the interval.
    pure logical function rises_at_end(model, state, patches)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state

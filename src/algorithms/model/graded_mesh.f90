@@ -124,7 +124,7 @@ contains
       real(wp), allocatable, intent(inout) :: points(:)
       integer, allocatable, intent(inout) :: ranks(:)
       real(wp) :: place(2*size(points))
-      integer :: rank(2*size(points)), i, n
+      integer :: level(2*size(points)), i, n
       logical :: padded(0:size(points))
 
       padded = [.false., joined, .false.]
@@ -132,17 +132,17 @@ contains
       do i = 1, size(points)
          if (padded(i)) then
             n = n + 1
-            rank(n) = minval(ranks(i:i + 1))
+            level(n) = minval(ranks(i:i + 1))
             place(n) = points(i + minloc(ranks(i:i + 1), dim=1) - 1)
             if (ranks(i) == ranks(i + 1)) place(n) = 0.5_wp*(points(i) + points(i + 1))
          else if (.not. padded(i - 1)) then
             n = n + 1
-            rank(n) = ranks(i)
+            level(n) = ranks(i)
             place(n) = points(i)
          end if
       end do
       points = place(:n)
-      ranks = rank(:n)
+      ranks = level(:n)
    end subroutine join_pairs
 
    !> Indices of the values to keep, by value.

@@ -2,9 +2,9 @@
 !> that are violated at its end.
 !>
 !> `event` stepping obtains the rates from the linear solve itself. `nominal` stepping is that of the dissertation (section 2.3):
-!> it solves a trial load step dL0, finds the first violation by interpolation (2.3 to 2.5) and solves again there. Both give the same
-!> states with different numbers of linear solves. The dissertation finds a wrong slip direction by bisection; at fixed statuses
-!> rates are constant, so that it is wrong in every trial step, and rates of shorter steps only have more round-off.
+!> it solves a trial load step dL0, finds the first violation by interpolation (2.3 to 2.5) and solves again there. Both give the
+!> same states with different numbers of linear solves. The dissertation finds a wrong slip direction by bisection; at fixed
+!> statuses rates are constant, so that it is wrong in every trial step, and rates of shorter steps only have more round-off.
 !>
 !> If friction is not linear (Dahl, weakening), a predictor with tangents is followed by a corrector (Newton) until the friction
 !> lines agree with the end of the increment; for Dahl's law this is the implicit midpoint rule, of second order. The difference of
