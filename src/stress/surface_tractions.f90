@@ -175,8 +175,9 @@ contains
       pure logical function is_apart()
          integer :: next
 
-         next = i + merge(1, -1, arc(i) < edges(1, nearest))
          is_apart = .true.
+         if (nearest == 0) return
+         next = i + merge(1, -1, arc(i) < edges(1, nearest))
          if (next >= 1 .and. next <= size(loaded)) is_apart = .not. loaded(next)
       end function is_apart
    end subroutine assign_nodes

@@ -16,7 +16,7 @@ from .generate import describe, problem
 from .problem import Problem
 from .relations import relations
 from .truth import truth_of
-from .verdict import RIGHT, WORDS, flagged_quantities, judge, public_name
+from .verdict import GROUPS, RIGHT, WORDS, flagged_quantities, judge, public_name
 
 #: Relations tried with one problem.
 RELATIONS_OF_ONE = 2
@@ -63,11 +63,12 @@ def record_of(made: Problem, seed: int) -> dict[str, Any]:
 
 
 def _related(made: Problem, base: mfv.Result, seed: int) -> dict[str, dict[str, float]]:
-    """What differs in some relations. What a warning calls not resolved may differ by what counts as right."""
+    """What differs in some relations. Quantities flagged as not resolved may differ by up to RIGHT where the problem is restated."""
     patterns = flagged_quantities(base)
 
-    def counts(path: str, difference: float) -> bool:
-        flagged = "/" in path and any(re.fullmatch(pattern, public_name(path)) for pattern in patterns)
+    def counts(name: str, path: str, difference: float) -> bool:
+        restated = name not in ("Python", "program") and path.split("/")[0] in GROUPS
+        flagged = restated and any(re.fullmatch(pattern, public_name(path)) for pattern in patterns)
         return difference > RIGHT or not flagged
 
     possible = relations(made, base, seed)
@@ -75,7 +76,7 @@ def _related(made: Problem, base: mfv.Result, seed: int) -> dict[str, dict[str, 
     found = {}
     for name in names:
         try:
-            found[str(name)] = {path: difference for path, difference in possible[name]().items() if counts(path, difference)}
+            found[str(name)] = {path: difference for path, difference in possible[name]().items() if counts(name, path, difference)}
         except (errors.MfvError, RuntimeError) as error:
             found[str(name)] = {f"error: {error}": math.inf}
     return found

@@ -13,8 +13,8 @@ module mfv_resolution
    use mfv_simulation, only: simulation_type
    use mfv_slip_zones, only: contact_interval, hidden_width_at_edge, needed_mesh, nodes_at_edge, resolved_nodes, slip_record_type
    use mfv_strings, only: has_word, to_text
-   use mfv_zone_edges, only: find_patches, find_zone_edges, patch_type, rises_at_end, zone_edges_type, zone_type, &
-                             zones_of
+   use mfv_zone_edges, only: find_patches, find_zone_edges, is_beyond_corner, patch_type, rises_at_end, zone_edges_type, &
+                             zone_type, zones_of
    implicit none
    private
    public :: find_unresolved, unresolved_type, add_unresolved, is_unresolved, all_quantities, undersampling, poorest_patch, &
@@ -341,16 +341,19 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
       type(patch_type), allocatable :: patches(:)
+      character(:), allocatable :: names
       logical :: now, before
 
       before = simulation%extremes%at_end
-      if (simulation%cycle_count > 0) before = before .or. simulation%cycles(simulation%cycle_count)%extremes%at_end
+      if (simulation%ends_with_cycle()) before = simulation%cycles(simulation%cycle_count)%extremes%at_end
       call find_patches(simulation%contact%model, simulation%contact%state, patches)
       now = rises_at_end(simulation%contact%model, simulation%contact%state, patches)
-      if (now .or. before) call add_unresolved(unresolved, trim(merge('peak_pressure peak_shear extremes', &
-                                                                      'extremes                         ', now)), &
-                                               'the contact reaches the end of a surface, where the pressure has no limit', &
-                                               'extend the surface, or round its end')
+      names = 'extremes'
+      if (now) names = 'peak_pressure '//names
+      if (now .and. simulation%contact%model%tangential) names = 'peak_shear '//names
+      if (now .or. before) &
+         call add_unresolved(unresolved, names, 'the contact reaches the end of a surface, where the pressure has no limit', &
+                             'extend the surface, or round its end')
    end subroutine check_surface_ends
 
    !> Slip zones with too few nodes.
@@ -387,10 +390,7 @@ contains
       text = 'slip zones have only '//to_text(nodes)//trim(merge(' node ', ' nodes', nodes == 1))
       if (nodes == 0) text = 'a slip zone has no node: it is narrower than the mesh resolves'
       remedy = trim(needed_mesh(simulation%contact%model, simulation%contact%state, width, resolved_nodes))
-      associate (scene => simulation%contact%model%scene)
-         if (.not. (allocated(scene%mesh%ends) .or. scene%lower%is_matrix() .or. needs_equal_intervals(scene))) &
-            remedy = "refine='edges' in &mesh, or "//remedy
-      end associate
+      if (can_refine(simulation)) remedy = "refine='edges' in &mesh, or "//remedy
       call add_unresolved(unresolved, names(2:), text//' ('//to_text(width/interval, 2)//' intervals)', 'use '//remedy//' for '// &
                           to_text(resolved_nodes)//' nodes in each')
 
@@ -411,7 +411,8 @@ contains
             call add(quantities, slip%nodes_now, slip%width_now)
          else if (slip%nodes_now == 0 .and. slip%width_now > 0.0_wp) then
             ! The largest shear may be at the edge of the slip zone too.
-            call add('peak_shear largest_shear'//largest_tensions(simulation), 0, slip%width_now)
+            call add('largest_shear'//largest_tensions(simulation), 0, slip%width_now)
+            if (index(quantities, 'peak_shear') > 0) call add('peak_shear', 0, slip%width_now)
          end if
       end subroutine add_zones
 
@@ -448,27 +449,41 @@ contains
       end subroutine add
    end subroutine check_slip_zones
 
+   !> Whether the mesh of a simulation could be refined at edges.
+   logical function can_refine(simulation)
+      type(simulation_type), intent(in) :: simulation
+
+      associate (scene => simulation%contact%model%scene)
+         can_refine = .not. (allocated(scene%mesh%ends) .or. scene%lower%is_matrix() .or. needs_equal_intervals(scene))
+      end associate
+   end function can_refine
+
    !> A largest shear at the outermost node of a patch: it lies in the last interval, where the pressure vanishes and limits it. It
-   !> is resolved if it hardly changes from node to node. At the end of a surface it has no limit, which its error bar says.
+   !> is resolved if it hardly changes from node to node. At a corner of a flat punch it has no limit, which its error bar says.
    subroutine check_largest_shear(simulation, unresolved)
       type(simulation_type), intent(in) :: simulation
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
       real(wp), parameter :: hardly = 0.1_wp
+      character(:), allocatable :: remedy
       type(zone_type), allocatable :: zones(:)
-      integer :: node, inner(0:2), i
+      integer :: node, side, inner(0:2), i
 
       associate (model => simulation%contact%model, state => simulation%contact%state)
-         if (.not. model%tangential .or. model%scene%lower%has_sharp_ends() .or. model%scene%upper%has_sharp_ends()) return
+         if (.not. model%tangential) return
          node = maxloc(abs(state%fields%shear), dim=1)
          if (.not. abs(state%fields%shear(node)) > 0.0_wp) return
          zones = zones_of(in_contact(state%status))
          if (.not. any(zones%first == node .or. zones%last == node)) return
-         inner = [(min(max(node + merge(i, -i, any(zones%first == node)), 1), model%nodes()), i=0, 2)]
+         side = merge(-1, 1, any(zones%first == node))
+         if (is_beyond_corner(model, model%arc(node) + side*model%width(node))) return
+         inner = [(min(max(node - side*i, 1), model%nodes()), i=0, 2)]
          associate (shear => abs(state%fields%shear(inner)))
             if (maxval(shear(:2) - shear(2:)) <= hardly*shear(1)) return
          end associate
+         remedy = 'use more nodes'
+         if (can_refine(simulation)) remedy = "use refine='edges' in &mesh, or more nodes"
          call add_unresolved(unresolved, 'peak_shear largest_shear', 'the largest shear is in the outermost interval of a '// &
-                             'contact, near x = '//to_text(model%x(node), 4), "use refine='edges' in &mesh, or more nodes")
+                             'contact, near x = '//to_text(model%x(node), 4), remedy)
       end associate
    end subroutine check_largest_shear
 

@@ -24,7 +24,7 @@ module mfv_zone_edges
    implicit none
    private
    public :: zone_type, patch_type, zone_edges_type, find_patches, find_zone_edges, outermost_edges, largest_shear, &
-             zones_of, ends_with_body, rises_at_end, slipping_run
+             zones_of, ends_with_body, is_beyond_corner, rises_at_end, slipping_run
 
    !> A zone of neighbouring nodes, from `first` to `last`, and its edges: arc lengths from the origin of x, positive to the
    !> right; and the uncertainty of these edges, lengths.
@@ -38,8 +38,8 @@ module mfv_zone_edges
 
    !> A contact patch: neighbouring nodes in contact, between open ones.
    type, extends(zone_type) :: patch_type
-      !> Whether the patch ends with the surface of a body, where the pressure may be singular. At other edges it vanishes as
-      !> the distance to the power `left_power` or `right_power`.
+      !> Whether the patch ends with the surface of a body, or with an interval there, where the pressure may be singular. At other
+      !> edges it vanishes as the distance to the power `left_power` or `right_power`.
       logical :: left_ends = .false., right_ends = .false.
       real(wp) :: left_power = 0.5_wp, right_power = 0.5_wp
       !> Its stick zones from left to right; size 0 without any.
@@ -154,6 +154,7 @@ contains
       type(contact_state_type), intent(in) :: state
       type(patch_type), allocatable, intent(out) :: patches(:)
       type(zone_type), allocatable :: zones(:)
+      real(wp) :: edge, error
       integer :: i
 
       zones = zones_of(in_contact(state%status))
@@ -165,8 +166,12 @@ contains
          patches(i)%right_ends = ends_with_body(model, zones(i)%last, 1)
          patches(i)%left_power = contact_power(model, state, zones(i)%first, -1)
          patches(i)%right_power = contact_power(model, state, zones(i)%last, 1)
-         call find_contact_edge(model, state, patches(i), -1, patches(i)%left, patches(i)%left_error)
-         call find_contact_edge(model, state, patches(i), 1, patches(i)%right, patches(i)%right_error)
+         call find_contact_edge(model, state, patches(i), -1, edge, error)
+         patches(i)%left = edge
+         patches(i)%left_error = error
+         call find_contact_edge(model, state, patches(i), 1, edge, error)
+         patches(i)%right = edge
+         patches(i)%right_error = error
          if (i == 1) cycle
          ! Extrapolated edges of neighbouring patches must not overlap.
          if (patches(i - 1)%right <= patches(i)%left) cycle
@@ -285,17 +290,18 @@ contains
       zones%last = last(:number)
    end function zones_of
 
-   !> Edge of a contact patch on `side` (-1 left, 1 right), arc length from the origin of x, and its uncertainty, length.
+   !> Edge of a contact patch on `side` (-1 left, 1 right), arc length from the origin of x, and its uncertainty, length. `patch`:
+   !> notes if that is the end of a surface.
    subroutine find_contact_edge(model, state, patch, side, edge, error)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
-      type(patch_type), intent(in) :: patch
+      type(patch_type), intent(inout) :: patch
       integer, intent(in) :: side
       real(wp), intent(out) :: edge, error
       !> The pressure vanishes at the end of the surface if not farther before it than this, in intervals.
-      real(wp), parameter :: at_end = 0.1_wp
+      real(wp), parameter :: nearest = 0.1_wp
       type(edge_samples_type) :: samples
-      real(wp) :: distance, last, reach
+      real(wp) :: distance, last, next, reach
       logical :: solved, rises
       integer :: outermost
 
@@ -306,11 +312,12 @@ contains
       rises = .false.
       if (patch%last > patch%first) rises = state%fields%pressure(outermost) >= state%fields%pressure(outermost - side)
       associate (arc => model%arc(outermost), width => model%width(outermost))
-         reach = max(distance, 0.5_wp*(1.0_wp + visible))
-         if (rises) reach = max(distance, 1.0_wp)
-         if (.not. model%scene%touchable(arc + side*reach*width)) then
-            last = abs(model%scene%last_touchable(arc, arc + side*max(distance, 1.0_wp)*width) - arc)/width
-            if (.not. (solved .and. distance < last - at_end)) then
+         next = 1.0_wp
+         if (outermost + side >= 1 .and. outermost + side <= model%nodes()) next = abs(model%arc(outermost + side) - arc)/width
+         reach = max(distance, merge(next, 0.5_wp*(1.0_wp + visible), rises))
+         if (is_beyond_surface(model, arc + side*reach*width)) then
+            last = abs(model%scene%last_touchable(arc, arc + side*max(distance, next)*width) - arc)/width
+            if (.not. (solved .and. distance < last - nearest)) then
                ! The end of the surface: the pressure does not vanish before it. An interval should end there.
                distance = last
                error = abs(last - 0.5_wp)
@@ -318,6 +325,8 @@ contains
                   distance = 0.5_wp
                   error = 0.0_wp
                end if
+               if (side < 0) patch%left_ends = .true.
+               if (side > 0) patch%right_ends = .true.
             end if
          end if
          edge = arc + side*width*distance
@@ -331,26 +340,46 @@ contains
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       type(patch_type), intent(in) :: patches(:)
-      real(wp), parameter :: growth = 3.0_wp
       integer :: i
 
       rises_at_end = .false.
-      if (model%scene%lower%has_sharp_ends() .or. model%scene%upper%has_sharp_ends()) return
       do i = 1, size(patches)
-         rises_at_end = rises_at_end .or. at_end(patches(i)%left, patches(i)%first, -1) .or. &
-                        at_end(patches(i)%right, patches(i)%last, 1)
+         rises_at_end = rises_at_end .or. rises(patches(i)%left, patches(i)%first, -1) .or. &
+                        rises(patches(i)%right, patches(i)%last, 1)
       end do
 
    contains
 
-      pure logical function at_end(edge, node, side)
+      pure logical function rises(edge, node, side)
          real(wp), intent(in) :: edge
          integer, intent(in) :: node, side
+         real(wp), parameter :: growth = 3.0_wp
 
-         at_end = growth*state%fields%pressure(node) > maxval(state%fields%pressure) .and. &
-                  .not. model%scene%touchable(edge + side*visible*model%width(node))
-      end function at_end
+         associate (beyond => edge + side*visible*model%width(node))
+            rises = growth*state%fields%pressure(node) > maxval(state%fields%pressure) .and. &
+                    is_beyond_surface(model, beyond) .and. .not. is_beyond_corner(model, beyond)
+         end associate
+      end function rises
    end function rises_at_end
+
+   !> Whether a surface has ended at an arc length. That of a matrix ends with the interval of its last node.
+   pure logical function is_beyond_surface(model, arc)
+      type(contact_model_type), intent(in) :: model
+      real(wp), intent(in) :: arc
+
+      is_beyond_surface = .not. (model%scene%lower%is_matrix() .or. model%scene%touchable(arc))
+   end function is_beyond_surface
+
+   !> Whether the surface of a body with corners by design, a flat punch, has ended at an arc length.
+   pure logical function is_beyond_corner(model, arc)
+      type(contact_model_type), intent(in) :: model
+      real(wp), intent(in) :: arc
+      real(wp) :: x
+
+      x = model%scene%x_of_arc(arc)
+      is_beyond_corner = (model%scene%lower%has_sharp_ends() .and. .not. model%scene%lower%has_surface(x)) .or. &
+                         (model%scene%upper%has_sharp_ends() .and. .not. model%scene%upper%has_surface(x))
+   end function is_beyond_corner
 
    !> Number of neighbouring nodes that slip in one direction, from a node to the left (-1) or right (1).
    pure integer function slipping_run(state, from, direction) result(nodes)

@@ -3,8 +3,8 @@
 !>
 !> `event` stepping obtains the rates from the linear solve itself. `nominal` stepping is that of the dissertation (section 2.3):
 !> it solves a trial load step dL0, finds the first violation by interpolation (2.3 to 2.5) and solves again there. Both give the
-!> same states with different numbers of linear solves. The dissertation finds a wrong slip direction by bisection; at fixed
-!> statuses rates are constant, so that it is wrong in every trial step, and rates of shorter steps only have more round-off.
+!> same states with different numbers of linear solves. The dissertation finds a wrong slip direction by bisection. Rates are
+!> constant at fixed statuses: a wrong direction is wrong from the start, and rates of shorter steps only have more round-off.
 !>
 !> If friction is not linear (Dahl, weakening), a predictor with tangents is followed by a corrector (Newton) until the friction
 !> lines agree with the end of the increment; for Dahl's law this is the implicit midpoint rule, of second order. The difference of
@@ -304,7 +304,7 @@ contains
 
       longest = merge(1.0_wp, length, relaxing)
       ! The rest of a segment may be too short for rates that are differences.
-      trial = max(longest, shortest_secant)
+      trial = max(longest, path%model%scene%method%load_step, shortest_secant)
       call solve_trial(path, constraints, trial, increment)
       if (increment%singular) return
       call search(path, rate_tolerance, longest, increment)

@@ -23,7 +23,7 @@ module mfv_table_file
    character(len=4), parameter :: no_values(11) = [character(4) :: '', 'nan', 'na', 'n/a', 'null', 'bad', '-', '--', '---', '*', &
                                                                                                                    '***']
    !> Lines among which columns and decimal marks are recognised.
-   integer, parameter :: lines_of_sample = 200
+   integer, parameter :: lines_of_sample = 1000
    !> A line with more cells than this has no names of columns.
    integer, parameter :: most_names = 1000
 
