@@ -196,25 +196,21 @@ contains
       complex(wp), intent(in) :: moments(0:), shift
       real(wp), intent(in) :: shrink
       complex(wp) :: shifted(0:most_moments)
-      real(wp) :: along
+      logical :: straight
       integer :: i, k
 
+      straight = .not. abs(aimag(shift)) > 0.0_wp
       shifted = [(moments(k)*shrink**k, k=0, most_moments)]
-      along = real(shift, wp)
       ! Binomial sums, in place; along a straight surface with real numbers.
-      if (abs(aimag(shift)) > 0.0_wp) then
-         do i = 1, most_moments
-            do k = most_moments, i, -1
+      do i = 1, most_moments
+         do k = most_moments, i, -1
+            if (straight) then
+               shifted(k) = shifted(k) + real(shift, wp)*shifted(k - 1)
+            else
                shifted(k) = shifted(k) + shift*shifted(k - 1)
-            end do
+            end if
          end do
-      else
-         do i = 1, most_moments
-            do k = most_moments, i, -1
-               shifted(k) = shifted(k) + along*shifted(k - 1)
-            end do
-         end do
-      end if
+      end do
    end function about_other
 
    !> Number of leaves.

@@ -184,17 +184,19 @@ contains
       type(edges_type), intent(in) :: first
       type(edges_type), intent(inout) :: edges
       real(wp), parameter :: very_near = 2.0e-3_wp
-      real(wp) :: away(size(first%points)), near
-      integer :: i, side
-      logical :: found(2)
+      real(wp) :: away(size(first%points)), nearest
+      logical :: tied(size(first%points))
+      integer :: i
 
-      near = very_near*(first%right - first%left)
       do i = 1, size(edges%points)
          if (modulo(edges%rank(i), 2) /= 0) cycle
          away = first%points - edges%points(i)
-         where (modulo(first%rank, 2) /= 0) away = huge(near)
-         found = [(minval(side*away, mask=side*away >= 0.0_wp) <= (1.0_wp + visible)*min(near, minval(abs(away))), side=-1, 1, 2)]
-         if (found(1) .neqv. found(2)) edges%points(i) = first%points(minloc(abs(away), dim=1))
+         where (modulo(first%rank, 2) /= 0) away = huge(nearest)
+         nearest = minval(abs(away))
+         tied = abs(away) <= (1.0_wp + visible)*nearest
+         if (nearest > very_near*(first%right - first%left)) cycle
+         if (any(tied .and. away > 0.0_wp) .and. any(tied .and. away < 0.0_wp)) cycle
+         edges%points(i) = first%points(minloc(abs(away), dim=1))
       end do
    end subroutine take_contact
 

@@ -154,7 +154,6 @@ contains
       type(contact_state_type), intent(in) :: state
       type(patch_type), allocatable, intent(out) :: patches(:)
       type(zone_type), allocatable :: zones(:)
-      real(wp) :: edge, error
       integer :: i
 
       zones = zones_of(in_contact(state%status))
@@ -166,12 +165,8 @@ contains
          patches(i)%right_ends = ends_with_body(model, zones(i)%last, 1)
          patches(i)%left_power = contact_power(model, state, zones(i)%first, -1)
          patches(i)%right_power = contact_power(model, state, zones(i)%last, 1)
-         call find_contact_edge(model, state, patches(i), -1, edge, error)
-         patches(i)%left = edge
-         patches(i)%left_error = error
-         call find_contact_edge(model, state, patches(i), 1, edge, error)
-         patches(i)%right = edge
-         patches(i)%right_error = error
+         call find_contact_edge(model, state, -1, patches(i))
+         call find_contact_edge(model, state, 1, patches(i))
          if (i == 1) cycle
          ! Extrapolated edges of neighbouring patches must not overlap.
          if (patches(i - 1)%right <= patches(i)%left) cycle
@@ -290,19 +285,15 @@ contains
       zones%last = last(:number)
    end function zones_of
 
-   !> Edge of a contact patch on `side` (-1 left, 1 right), arc length from the origin of x, and its uncertainty, length. `patch`:
-   !> notes if that is the end of a surface.
-   subroutine find_contact_edge(model, state, patch, side, edge, error)
+   !> Find the edge of a patch on `side` (-1 left, 1 right), its uncertainty, and whether it is the end of a surface.
+   subroutine find_contact_edge(model, state, side, patch)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
-      type(patch_type), intent(inout) :: patch
       integer, intent(in) :: side
-      real(wp), intent(out) :: edge, error
-      !> The pressure vanishes at the end of the surface if not farther before it than this, in intervals.
-      real(wp), parameter :: nearest = 0.1_wp
+      type(patch_type), intent(inout) :: patch
       type(edge_samples_type) :: samples
-      real(wp) :: distance, last, next, reach
-      logical :: solved, rises
+      real(wp) :: distance, error
+      logical :: solved, rises, ends
       integer :: outermost
 
       outermost = merge(patch%last, patch%first, side > 0)
@@ -311,28 +302,45 @@ contains
       call find_distance(straightened(samples, merge(patch%right_power, patch%left_power, side > 0)), distance, error, solved)
       rises = .false.
       if (patch%last > patch%first) rises = state%fields%pressure(outermost) >= state%fields%pressure(outermost - side)
+      call end_with_surface(model, outermost, side, rises, solved, distance, error, ends)
+      if (side < 0) then
+         patch%left = model%arc(outermost) - model%width(outermost)*distance
+         patch%left_error = model%width(outermost)*error
+         patch%left_ends = patch%left_ends .or. ends
+      else
+         patch%right = model%arc(outermost) + model%width(outermost)*distance
+         patch%right_error = model%width(outermost)*error
+         patch%right_ends = patch%right_ends .or. ends
+      end if
+   end subroutine find_contact_edge
+
+   !> Put a contact edge at the end of a surface on `side` that is nearer than the edge or, if the pressure `rises` towards it, than
+   !> the next node; not if the edge is known to lie before the end (`solved`). `distance` of the edge from the `outermost` node
+   !> and its `error`, intervals; `ends`: whether it is now at the end.
+   subroutine end_with_surface(model, outermost, side, rises, solved, distance, error, ends)
+      type(contact_model_type), intent(in) :: model
+      integer, intent(in) :: outermost, side
+      logical, intent(in) :: rises, solved
+      real(wp), intent(inout) :: distance, error
+      logical, intent(out) :: ends
+      !> The pressure vanishes at the end if not farther before it than this, in intervals.
+      real(wp), parameter :: nearest = 0.1_wp
+      real(wp) :: last, next
+
       associate (arc => model%arc(outermost), width => model%width(outermost))
          next = 1.0_wp
          if (outermost + side >= 1 .and. outermost + side <= model%nodes()) next = abs(model%arc(outermost + side) - arc)/width
-         reach = max(distance, merge(next, 0.5_wp*(1.0_wp + visible), rises))
-         if (is_beyond_surface(model, arc + side*reach*width)) then
-            last = abs(model%scene%last_touchable(arc, arc + side*max(distance, next)*width) - arc)/width
-            if (.not. (solved .and. distance < last - nearest)) then
-               ! The end of the surface: the pressure does not vanish before it. An interval should end there.
-               distance = last
-               error = abs(last - 0.5_wp)
-               if (error < visible) then
-                  distance = 0.5_wp
-                  error = 0.0_wp
-               end if
-               if (side < 0) patch%left_ends = .true.
-               if (side > 0) patch%right_ends = .true.
-            end if
-         end if
-         edge = arc + side*width*distance
-         error = width*error
+         ends = is_beyond_surface(model, arc + side*width*max(distance, merge(next, 0.5_wp*(1.0_wp + visible), rises)))
+         if (.not. ends) return
+         last = abs(model%scene%last_touchable(arc, arc + side*max(distance, next)*width) - arc)/width
+         ends = .not. (solved .and. distance < last - nearest)
+         if (.not. ends) return
+         ! An interval should end there.
+         if (abs(last - 0.5_wp) < visible) last = 0.5_wp
+         distance = last
+         error = abs(last - 0.5_wp)
       end associate
-   end subroutine find_contact_edge
+   end subroutine end_with_surface
 
    !> Whether the largest pressure of a finer mesh is probably at the end of a surface that is no corner by design, where it grows
    !> as the inverse root of the interval.
