@@ -3,9 +3,10 @@
 module mfv_resolution
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use mfv_body, only: body_type
-   use mfv_contact_model, only: needs_equal_intervals
+   use mfv_contact_model, only: contact_model_type, needs_equal_intervals
+   use mfv_contact_state, only: contact_state_type
    use mfv_interior, only: has_interior
-   use mfv_kinds, only: wp
+   use mfv_kinds, only: pi, wp
    use mfv_motions, only: motion_approach
    use mfv_node_status, only: holds, in_contact, slip_sign
    use mfv_observables, only: observable_count, observables
@@ -550,17 +551,40 @@ contains
    end subroutine check_rolling
 
    !> Wear mostly by cycles that change the pressures too much: the shape, and with it the tractions, are then as uncertain as it.
+   !> And a worn part that ends within few intervals at a large pressure.
    subroutine check_worn_shape(simulation, unresolved)
       type(simulation_type), intent(in) :: simulation
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
-      real(wp), parameter :: most = 0.5_wp
+      real(wp), parameter :: most = 0.5_wp, sharp = 0.05_wp
 
       associate (model => simulation%contact%model, state => simulation%contact%state)
          if (.not. model%scene%wear%acts() .or. simulation%cycle_count == 0) return
-         if (.not. state%coarsely_worn > most*model%force(state%worn)) return
-         call add_unresolved(unresolved, 'peak_pressure peak_shear extremes worn_area wear_depth', 'most of the wear is from '// &
-                             'cycles that each change the pressures by much', 'use a smaller coefficient and more cycles')
+         if (state%coarsely_worn > most*model%force(state%worn)) &
+            call add_unresolved(unresolved, 'peak_pressure peak_shear extremes worn_area wear_depth', 'most of the wear is '// &
+                                'from cycles that each change the pressures by much', 'use a smaller coefficient and more cycles')
+         if (pressure_at_worn_kink(model, state) > sharp*maxval(state%fields%pressure)) &
+            call add_unresolved(unresolved, 'peak_pressure peak_shear extremes', 'the worn part of the surface ends within few '// &
+                                'intervals where the pressure is large', 'use more nodes')
       end associate
    end subroutine check_worn_shape
+
+   !> Pressure that the sharpest bend of the worn depth adds, force/length^2, where the pressure is large: m J/pi by a jump J of the
+   !> slope from one interval to the next, as for a profile (see mfv_profile_sampling). It is small if the mesh resolves the bend.
+   real(wp) function pressure_at_worn_kink(model, state) result(added)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      real(wp), parameter :: large = 0.7_wp
+      real(wp) :: slope(model%nodes() - 1)
+      logical :: touching(model%nodes())
+      integer :: node
+
+      slope = (state%worn(2:) - state%worn(:model%nodes() - 1))/(model%x(2:) - model%x(:model%nodes() - 1))
+      touching = in_contact(state%status)
+      added = 0.0_wp
+      do node = 2, model%nodes() - 1
+         if (.not. all(touching(node - 1:node + 1)) .or. state%fields%pressure(node) < large*maxval(state%fields%pressure)) cycle
+         added = max(added, model%compliance%modulus*abs(slope(node) - slope(node - 1))/pi)
+      end do
+   end function pressure_at_worn_kink
 
 end module mfv_resolution
