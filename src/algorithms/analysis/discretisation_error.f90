@@ -13,13 +13,14 @@ module mfv_discretisation_error
    use mfv_friction, only: friction_coefficient_type
    use mfv_kinds, only: pi, wp
    use mfv_motions, only: bulk_motions, control_keep, motion_approach, motion_shift
-   use mfv_node_status, only: holds, in_contact
+   use mfv_node_status, only: holds, in_contact, slips
    use mfv_observables
    use mfv_observer, only: observer_type, relay_type
    use mfv_profile_sampling, only: largest_jump, negligible_pressure
    use mfv_resolution, only: add_unresolved, all_quantities, find_unresolved, is_unresolved, undersampling, unresolved_type
    use mfv_scene, only: scene_type
-   use mfv_simulation, only: history_none, mark_reversal, new_simulation, simulation_type, states_steps
+   use mfv_simulation, only: history_none, mark_loading, mark_return, mark_reversal, new_simulation, simulation_type, &
+                             states_steps
    use mfv_slip_zones, only: contact_interval, largest_resolved_error, slip_record_type
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
@@ -467,10 +468,10 @@ contains
 
       of_behaviour = allowances_of_behaviours(simulation, simulation%contact%state)
       allowances = of_behaviour(observables%error)
-      if (simulation%cycle_count > 0 .and. simulation%marks(mark_reversal)%step > 0) then
-         of_behaviour = allowances_of_behaviours(simulation, simulation%padded(simulation%marks(mark_reversal)))
-         where (index(observables%name, '_reversal') > 0 .or. observables%name == 'smallest_stick_ratio' .or. &
-                observables%name == 'largest_stick_ratio') allowances = max(allowances, of_behaviour(observables%error))
+      if (simulation%cycle_count > 0) then
+         call take_turning_point(mark_loading, '_loading')
+         call take_turning_point(mark_reversal, '_reversal')
+         call take_turning_point(mark_return, '_return')
       end if
       associate (model => simulation%contact%model)
          where (observables%error == error_edges .and. observables%unit == '1') &
@@ -501,6 +502,18 @@ contains
       if (simulation%contact%model%scene%wear%acts() .and. simulation%cycle_count > 0) call add_to_wear()
 
    contains
+
+      !> Uncertainties in the state of a turning point, whose names end with `ending`, and of the extreme stick ratios.
+      subroutine take_turning_point(mark, ending)
+         integer, intent(in) :: mark
+         character(*), intent(in) :: ending
+
+         if (simulation%marks(mark)%step == 0) return
+         of_behaviour = allowances_of_behaviours(simulation, simulation%padded(simulation%marks(mark)))
+         where (index(observables%name, ending) > 0 .or. mark /= mark_loading .and. &
+                (observables%name == 'smallest_stick_ratio' .or. observables%name == 'largest_stick_ratio')) &
+            allowances = max(allowances, of_behaviour(observables%error))
+      end subroutine take_turning_point
 
       !> A stick zone of few intervals before the end, where its edges are not looked at, is known to one of them; without a node to
       !> two. `interval`: over the length of the contact. None where all nodes slide in the end, or at the ends of cycles.
@@ -587,7 +600,8 @@ contains
          length = max(sum(patches%length()), model%interval())
          of_behaviour = 0.0_wp
          of_behaviour(error_edges) = 0.5_wp*contact
-         of_behaviour(error_stick) = norm2([stick, contact*state%stick_nodes()/max(state%contact_nodes(), 1)])/length
+         of_behaviour(error_stick) = max(norm2([stick, contact*state%stick_nodes()/max(state%contact_nodes(), 1)]), &
+                                         marginal_length(model, state))/length
          if (size(patches) > 0) then
             nodal = maxval(abs(state%fields%shear))
             largest = maxval([(largest_shear(model, state, patches(i)), i=1, size(patches))])
@@ -608,6 +622,23 @@ contains
          end if
       end associate
    end function allowances_of_behaviours
+
+   !> Length over which nodes stick or slip by little: held next to their friction limit, or with next to no slip since their last
+   !> stick. A slightly different mesh may decide otherwise.
+   real(wp) function marginal_length(model, state) result(length)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      real(wp), parameter :: least_margin = 0.02_wp, least_slip = 1.0e-3_wp
+      real(wp), allocatable :: slip(:)
+
+      length = 0.0_wp
+      if (.not. model%tangential .or. .not. allocated(model%scene%friction%law)) return
+      slip = abs(state%fields%slip() - state%stuck_slip)
+      associate (limit => model%static_friction*state%fields%pressure, slipping => slips(state%status))
+         length = sum(model%width, mask=holds(state%status) .and. abs(state%fields%shear) > (1.0_wp - least_margin)*limit) + &
+                  sum(model%width, mask=slipping .and. slip < least_slip*maxval(slip, mask=slipping))
+      end associate
+   end function marginal_length
 
    !> Change of the largest shear, which is `largest`, if the edges of the stick zones lie elsewhere within their uncertainties,
    !> force/length^2.
