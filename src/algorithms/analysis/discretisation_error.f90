@@ -480,6 +480,8 @@ contains
          call add_narrow_stick(observable_place('smallest_stick_ratio'), contact_interval(model, simulation%contact%state)/ &
                                max(values(observable_place('contact_length')), model%interval()))
          call add_coarse_slip(simulation%slip, 'dissipation', 1.0_wp)
+         if (.not. ieee_is_nan(values(observable_place('largest_slip_range')))) &
+            call add_hidden('largest_slip_range', maxval(hidden_slip()))
          if (simulation%cycle_count > 0) then
             associate (cycle => simulation%cycles(simulation%cycle_count))
                call add_coarse_slip(cycle%slip(), 'cycle_dissipation', 1.0_wp)
@@ -539,30 +541,45 @@ contains
          where (observables%name == 'worn_area' .or. observables%name == 'wear_depth') allowances = max(allowances, part*values)
       end subroutine add_to_wear
 
-      !> The error of a dissipation over `unit` (force) by slip zones of few intervals, or within the outermost one at either end,
-      !> where the slip is at most of the order of mu p times the interval over the contact modulus.
+      !> The error of a dissipation over `unit` (force) by slip zones of few intervals, or within the outermost one at either end.
       subroutine add_coarse_slip(slip, name, unit)
          type(slip_record_type), intent(in) :: slip
          character(*), intent(in) :: name
          real(wp), intent(in) :: unit
-         logical, allocatable :: touching(:)
-         integer :: ends(2)
-         real(wp) :: hidden
 
          if (ieee_is_nan(values(observable_place(name)))) return
-         associate (allowance => allowances(observable_place(name)), value => abs(values(observable_place(name))), &
-                    model => simulation%contact%model, state => simulation%contact%state)
-            if (name /= 'loss_factor') &
-               allowance = value*min(slip%error_number()*contact_interval(model, state)**2, largest_resolved_error)
+         associate (allowance => allowances(observable_place(name)), model => simulation%contact%model)
+            if (name /= 'loss_factor') allowance = abs(values(observable_place(name)))* &
+                                                   min(slip%error_number()*contact_interval(model, simulation%contact%state)**2, &
+                                                       largest_resolved_error)
+            call add_hidden(name, sum(hidden_slip()**2)*model%compliance%modulus/unit)
+         end associate
+      end subroutine add_coarse_slip
+
+      !> Slip within the outermost interval at either end, at most of the order of mu p times the interval over the contact modulus.
+      function hidden_slip() result(slip)
+         real(wp) :: slip(2)
+         logical, allocatable :: touching(:)
+         integer :: ends(2)
+
+         slip = 0.0_wp
+         associate (model => simulation%contact%model, state => simulation%contact%state)
             touching = in_contact(state%status)
             if (.not. any(touching .and. abs(state%fields%shear) > 0.0_wp)) return
             ends = [findloc(touching, .true., dim=1), findloc(touching, .true., dim=1, back=.true.)]
-            hidden = sum((model%static_friction(ends)*state%fields%pressure(ends)*model%width(ends))**2) &
-                     /(model%compliance%modulus*unit)
-            ! A larger dissipation is that of nodes.
+            slip = model%static_friction(ends)*state%fields%pressure(ends)*model%width(ends)/model%compliance%modulus
+         end associate
+      end function hidden_slip
+
+      !> Add to the allowance of a quantity what is `hidden` within the outermost intervals; a larger value is that of nodes.
+      subroutine add_hidden(name, hidden)
+         character(*), intent(in) :: name
+         real(wp), intent(in) :: hidden
+
+         associate (allowance => allowances(observable_place(name)), value => abs(values(observable_place(name))))
             if (hidden > 0.0_wp) allowance = allowance + hidden*min(hidden/max(value, tiny(value)), 1.0_wp)
          end associate
-      end subroutine add_coarse_slip
+      end subroutine add_hidden
    end function interval_allowances
 
    !> Distance of the farthest maximum of the pressure from `place`, length, that may be the largest between nodes: it rises by no
