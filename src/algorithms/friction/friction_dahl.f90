@@ -189,28 +189,71 @@ contains
       end if
    end function secant
 
-   !> The line of a creeping node: F = tau1 - tau0 + K (s1 - s0) = 0, linearised.
+   !> The tangent of tau1(s1, p1) of a creeping node, from F = tau1 - tau0 + K (s1 - s0) = 0. A guess whose slip is against the
+   !> motion has the stiffness of its own direction: with that of the other one the equations may have no solution, and the
+   !> reversal would not be found.
    pure function creeping_row(self, direction, before, after) result(row)
       class(dahl_law_type), intent(in) :: self
       integer, intent(in) :: direction
       type(friction_point_type), intent(in) :: before, after
       type(friction_row_type) :: row
+      type(friction_point_type) :: end
       real(wp) :: force, limit, stiffness, steepness, slipped, by_shear, by_pressure
+      integer :: way
 
-      call find_stiffness(self, direction, before, after, force, limit, stiffness, steepness)
       slipped = after%slip - before%slip
+      way = merge(-direction, direction, direction*slipped < 0.0_wp)
+      end = after
+      end%shear = -way*force_after(self, abs(slipped), -way*before%shear, mean_limit(before, after))
+      call find_stiffness(self, way, before, end, force, limit, stiffness, steepness)
       by_shear = 0.0_wp
       by_pressure = 0.0_wp
       if (limit > 0.0_wp) then
-         by_shear = 0.5_wp*steepness*direction/limit*slipped
+         by_shear = 0.5_wp*steepness*abs(slipped)/limit
          by_pressure = 0.5_wp*steepness*before%static*force/limit**2*slipped
       end if
-      by_shear = max(by_shear, 0.0_wp)
       row%stiffness = -stiffness/(1.0_wp + by_shear)
       row%slope = -by_pressure/(1.0_wp + by_shear)
-      row%offset = (before%shear + stiffness*before%slip + by_shear*after%shear + by_pressure*after%pressure) &
-                   /(1.0_wp + by_shear)
+      row%offset = end%shear - row%stiffness*end%slip - row%slope*end%pressure
    end function creeping_row
+
+   !> Mean of mu p at two points, force/length^2.
+   elemental real(wp) function mean_limit(before, after)
+      type(friction_point_type), intent(in) :: before, after
+
+      mean_limit = 0.5_wp*before%static*(before%pressure + after%pressure)
+   end function mean_limit
+
+   !> The bristle load f1 after a slip s > 0 in the direction of f, from f0 by the implicit midpoint rule, force/length^2:
+   !> f1 - f0 - sigma (1 - (f0 + f1)/(2 limit))^gamma s = 0, which increases with f1. By Newton's method within bounds.
+   elemental real(wp) function force_after(self, slip, force, limit) result(after)
+      class(dahl_law_type), intent(in) :: self
+      real(wp), intent(in) :: slip, force, limit
+      integer, parameter :: most_iterations = 100
+      real(wp) :: bounds(2), room, stiffness, steepness, residual, next
+      integer :: iteration
+
+      if (.not. limit > 0.0_wp .or. .not. self%exponent > 0.0_wp) then
+         after = force + merge(0.0_wp, self%stiffness*slip, self%exponent > 0.0_wp)
+         return
+      end if
+      bounds = [min(force, 2.0_wp*limit - force), max(force, 2.0_wp*limit - force)]
+      after = force
+      do iteration = 1, most_iterations
+         room = 1.0_wp - 0.5_wp*(force + after)/limit
+         call find_slope(self, room, stiffness, steepness)
+         residual = after - force - stiffness*slip
+         if (residual > 0.0_wp) then
+            bounds(2) = after
+         else
+            bounds(1) = after
+         end if
+         next = after - residual/(1.0_wp + 0.5_wp*steepness*slip/limit)
+         if (next <= bounds(1) .or. next >= bounds(2)) next = 0.5_wp*(bounds(1) + bounds(2))
+         if (abs(next - after) <= spacing(limit)) exit
+         after = next
+      end do
+   end function force_after
 
    pure real(wp) function strength(self, point)
       class(dahl_law_type), intent(in) :: self
@@ -225,22 +268,33 @@ contains
       integer, intent(in) :: direction
       type(friction_point_type), intent(in) :: before, after
       real(wp), intent(out) :: force, limit, stiffness, steepness
-      real(wp), parameter :: least_slope = 0.05_wp, most_slope = 1.0e3_wp, farthest = 10.0_wp
+      real(wp), parameter :: farthest = 10.0_wp
       real(wp) :: room
 
       force = -0.5_wp*(before%shear + after%shear)*direction
-      limit = 0.5_wp*before%static*(before%pressure + after%pressure)
+      limit = mean_limit(before, after)
       room = 1.0_wp
-      if (abs(force) < farthest*limit) room = min(1.0_wp - force/limit, 2.0_wp)
+      if (abs(force) < farthest*limit) room = 1.0_wp - force/limit
       if (.not. abs(force) < farthest*limit .and. abs(force) > 0.0_wp) room = merge(1.0_wp - farthest, 2.0_wp, force > 0.0_wp)
+      call find_slope(self, room, stiffness, steepness)
+   end subroutine find_stiffness
+
+   !> K and minus its derivative by f/(mu p), force/length^3, where `room` = 1 - f/(mu p). The law is continued beyond the limit with
+   !> its sign (eq. 3.9), and with the stiffness of the limit beyond that against the motion; converged states are not there.
+   elemental subroutine find_slope(self, room, stiffness, steepness)
+      class(dahl_law_type), intent(in) :: self
+      real(wp), intent(in) :: room
+      real(wp), intent(out) :: stiffness, steepness
+      real(wp), parameter :: least_slope = 0.05_wp, most_slope = 1.0e3_wp
+
       stiffness = self%stiffness
       steepness = 0.0_wp
-      if (self%exponent > 0.0_wp) then
-         ! For the iterations the law is continued beyond the limit with its sign (eq. 3.9); converged states are not beyond it.
-         stiffness = self%stiffness*sign(abs(room)**self%exponent, room)
+      if (.not. self%exponent > 0.0_wp) return
+      associate (inside => min(room, 2.0_wp))
+         stiffness = self%stiffness*sign(abs(inside)**self%exponent, inside)
          steepness = self%stiffness*self%exponent &
-                     *min(max(max(abs(room), 1.0e-9_wp)**(self%exponent - 1.0_wp), least_slope), most_slope)
-      end if
-   end subroutine find_stiffness
+                     *min(max(max(abs(inside), 1.0e-9_wp)**(self%exponent - 1.0_wp), least_slope), most_slope)
+      end associate
+   end subroutine find_slope
 
 end module mfv_friction_dahl
