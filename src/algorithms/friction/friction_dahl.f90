@@ -181,7 +181,7 @@ contains
       real(wp) :: force, limit, steepness
 
       if (creeps(status)) then
-         call find_stiffness(self, motion_sign(status), before, after, force, limit, row%stiffness, steepness)
+         call find_stiffness(self, way(motion_sign(status), before, after), before, after, force, limit, row%stiffness, steepness)
          row%stiffness = -row%stiffness
          row%offset = before%shear - row%stiffness*before%slip
       else
@@ -189,9 +189,16 @@ contains
       end if
    end function secant
 
-   !> The tangent of tau1(s1, p1) of a creeping node, from F = tau1 - tau0 + K (s1 - s0) = 0. A guess whose slip is against the
-   !> motion has the stiffness of its own direction: with that of the other one the equations may have no solution, and the
-   !> reversal would not be found.
+   !> The direction of a guess, which is that of the motion, `direction`, or against it. With the stiffness of the wrong one the
+   !> equations may have no solution, and the reversal would not be found.
+   pure integer function way(direction, before, after)
+      integer, intent(in) :: direction
+      type(friction_point_type), intent(in) :: before, after
+
+      way = merge(-direction, direction, direction*(after%slip - before%slip) < 0.0_wp)
+   end function way
+
+   !> The tangent of tau1(s1, p1) of a creeping node, from F = tau1 - tau0 + K (s1 - s0) = 0.
    pure function creeping_row(self, direction, before, after) result(row)
       class(dahl_law_type), intent(in) :: self
       integer, intent(in) :: direction
@@ -199,13 +206,13 @@ contains
       type(friction_row_type) :: row
       type(friction_point_type) :: end
       real(wp) :: force, limit, stiffness, steepness, slipped, by_shear, by_pressure
-      integer :: way
+      integer :: side
 
       slipped = after%slip - before%slip
-      way = merge(-direction, direction, direction*slipped < 0.0_wp)
+      side = way(direction, before, after)
       end = after
-      end%shear = -way*force_after(self, abs(slipped), -way*before%shear, mean_limit(before, after))
-      call find_stiffness(self, way, before, end, force, limit, stiffness, steepness)
+      end%shear = -side*force_after(self, abs(slipped), -side*before%shear, mean_limit(before, after))
+      call find_stiffness(self, side, before, end, force, limit, stiffness, steepness)
       by_shear = 0.0_wp
       by_pressure = 0.0_wp
       if (limit > 0.0_wp) then
