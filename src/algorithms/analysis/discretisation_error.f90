@@ -13,7 +13,7 @@ module mfv_discretisation_error
    use mfv_friction, only: friction_coefficient_type
    use mfv_kinds, only: pi, wp
    use mfv_motions, only: bulk_motions, control_keep, motion_approach, motion_shift
-   use mfv_node_status, only: holds, in_contact, slips
+   use mfv_node_status, only: holds, in_contact
    use mfv_observables
    use mfv_observer, only: observer_type, relay_type
    use mfv_profile_sampling, only: largest_jump, negligible_pressure
@@ -25,7 +25,7 @@ module mfv_discretisation_error
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
    use mfv_tolerances, only: certified, significant
-   use mfv_zone_edges, only: find_patches, largest_shear, patch_type, slipping_run, zones_of
+   use mfv_zone_edges, only: find_patches, largest_shear, patch_type, slipping_run, zone_type, zones_of
    implicit none
    private
    public :: estimate_error, coarser_scene, scene_on_mesh, fix_cycles, nearest_mesh, allowances_of_behaviours, has_coarser_meshes
@@ -640,21 +640,22 @@ contains
       end associate
    end function allowances_of_behaviours
 
-   !> Length over which nodes stick or slip by little: held next to their friction limit, or with next to no slip since their last
-   !> stick. A slightly different mesh may decide otherwise.
+   !> Length over which neighbouring nodes are held next to their friction limit: on a slightly different mesh they may slip. A single
+   !> node may be so near to any edge.
    real(wp) function marginal_length(model, state) result(length)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
-      real(wp), parameter :: least_margin = 0.02_wp, least_slip = 1.0e-3_wp
-      real(wp), allocatable :: slip(:)
+      real(wp), parameter :: least_margin = 0.002_wp
+      type(zone_type), allocatable :: runs(:)
+      integer :: i
 
       length = 0.0_wp
       if (.not. model%tangential .or. .not. allocated(model%scene%friction%law)) return
-      slip = abs(state%fields%slip() - state%stuck_slip)
-      associate (limit => model%static_friction*state%fields%pressure, slipping => slips(state%status))
-         length = sum(model%width, mask=holds(state%status) .and. abs(state%fields%shear) > (1.0_wp - least_margin)*limit) + &
-                  sum(model%width, mask=slipping .and. slip < least_slip*maxval(slip, mask=slipping))
-      end associate
+      runs = zones_of(holds(state%status) .and. &
+                      abs(state%fields%shear) > (1.0_wp - least_margin)*model%static_friction*state%fields%pressure)
+      do i = 1, size(runs)
+         if (runs(i)%last > runs(i)%first) length = length + sum(model%width(runs(i)%first:runs(i)%last))
+      end do
    end function marginal_length
 
    !> Change of the largest shear, which is `largest`, if the edges of the stick zones lie elsewhere within their uncertainties,
