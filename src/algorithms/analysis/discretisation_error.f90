@@ -641,7 +641,7 @@ contains
    end function allowances_of_behaviours
 
    !> Length over which neighbouring nodes are held next to their friction limit: on a slightly different mesh they may slip. A single
-   !> node may be so near to any edge.
+   !> node may be so near to any edge; and nodes that have just reached it, as at the end of a closed cycle, are those that slip.
    real(wp) function marginal_length(model, state) result(length)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
@@ -651,8 +651,9 @@ contains
 
       length = 0.0_wp
       if (.not. model%tangential .or. .not. allocated(model%scene%friction%law)) return
-      runs = zones_of(holds(state%status) .and. &
-                      abs(state%fields%shear) > (1.0_wp - least_margin)*model%static_friction*state%fields%pressure)
+      associate (limit => model%static_friction*state%fields%pressure, shear => abs(state%fields%shear))
+         runs = zones_of(holds(state%status) .and. shear > (1.0_wp - least_margin)*limit .and. shear < (1.0_wp - certified)*limit)
+      end associate
       do i = 1, size(runs)
          if (runs(i)%last > runs(i)%first) length = length + sum(model%width(runs(i)%first:runs(i)%last))
       end do

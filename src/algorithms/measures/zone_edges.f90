@@ -203,19 +203,20 @@ contains
    end subroutine find_stick_zones
 
    !> Nodes that stick, and those that may slip but have not yet: when a cycle repeats its tractions, many nodes reach their
-   !> limit together and rounding errors decide which are called slipping.
+   !> limit together and rounding errors decide which are called slipping. Where no node is called sticking, more must rest than the
+   !> last ones before sliding.
    pure function held(state)
       type(contact_state_type), intent(in) :: state
+      integer, parameter :: last_ones = 4
       logical :: held(size(state%status))
       real(wp) :: scale
 
-      held = .false.
-      if (.not. any(holds(state%status))) return
       associate (shift => state%fields%motion(motion_shift), tangential => state%fields%tangential)
          scale = max(maxval(abs(tangential)), abs(shift))
          held = holds(state%status) .or. (slips(state%status) .and. &
                                           abs(tangential - shift - state%stuck_slip) <= certified*scale)
       end associate
+      if (.not. any(holds(state%status)) .and. count(held) <= last_ones) held = .false.
    end function held
 
    !> Largest size of the shear traction in a patch, force/length^2: at its nodes, and at the edges of stick zones between nodes,
