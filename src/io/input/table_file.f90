@@ -70,9 +70,13 @@ contains
       call read_lines(path, text, error)
       if (allocated(error)) return
       text%names = names
-      call recognise(text, columns, with_gaps, found)
-      if (found < columns) text%names = 'a height, or two, '//names
+      found = columns
       call text%parse(1, found, with_gaps, table, rows, error)
+      if (.not. are_all_lines(text, rows, error)) then
+         call recognise(text, columns, with_gaps, found)
+         if (found < columns) text%names = 'a height, or two, '//names
+         call text%parse(1, found, with_gaps, table, rows, error)
+      end if
       if (allocated(error)) return
       if (found == columns + 1) call drop_row_numbers(text, rows, table, error)
       if (found == 1 .and. columns > 1) call drop_count(text, rows, table)
@@ -86,6 +90,18 @@ contains
       call move_alloc(alone, table)
       deallocate (error)
    end subroutine read_table
+
+   !> Whether the lines `rows` that were parsed are all but comments, so that nothing else can be meant. `error`: from parsing.
+   logical function are_all_lines(text, rows, error)
+      type(text_type), intent(in) :: text
+      integer, intent(in) :: rows(:)
+      type(error_type), allocatable, intent(in) :: error
+      integer :: i
+
+      are_all_lines = .false.
+      if (allocated(error) .or. size(rows) == 0) return
+      are_all_lines = all([(is_comment(text%line(i)), i=1, rows(1) - 1)])
+   end function are_all_lines
 
    !> Columns of numbers from a text file under a line with their names, which may be a comment. `table`: shape (columns, rows).
    !> Error MFV_INPUT_ERROR with line, column and what would be right.
@@ -224,12 +240,14 @@ contains
             end do
             if (i < length .and. bytes(min(i + 1, length):min(i + 1, length)) == line_feed) i = i + 1
             text(n:n) = line_feed
-         else if (bytes(i:min(i + 2, length)) == minus) then
-            text(n:n) = '-'
-            i = i + 2
-         else if (bytes(i:min(i + 1, length)) == no_break) then
-            text(n:n) = ' '
-            i = i + 1
+         else if (code > 127) then
+            if (bytes(i:min(i + 2, length)) == minus) then
+               text(n:n) = '-'
+               i = i + 2
+            else if (bytes(i:min(i + 1, length)) == no_break) then
+               text(n:n) = ' '
+               i = i + 1
+            end if
          else if (code == 12) then ! form feed
             text(n:n) = ' '
          else if ((code < 32 .and. scan(bytes(i:i), tab//line_feed) == 0) .or. code == 127) then
