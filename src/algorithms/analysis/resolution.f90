@@ -470,6 +470,7 @@ contains
       character(:), allocatable :: remedy
       type(zone_type), allocatable :: zones(:)
       integer :: node, side, distance, inner(0:2), i
+      logical :: had_few_nodes
 
       associate (model => simulation%contact%model, state => simulation%contact%state)
          if (.not. model%tangential) return
@@ -482,17 +483,16 @@ contains
          if (is_beyond_corner(model, model%arc(node + side*distance) + side*model%width(node + side*distance))) return
          remedy = 'use more nodes'
          if (can_refine(simulation)) remedy = "use refine='edges' in &mesh, or more nodes"
-         if (distance == 0) then
-            inner = [(min(max(node - side*i, 1), model%nodes()), i=0, 2)]
-            associate (shear => abs(state%fields%shear(inner)))
-               if (maxval(shear(:2) - shear(2:)) <= hardly*shear(1)) return
-            end associate
-            call add_unresolved(unresolved, 'peak_shear largest_shear', 'the largest shear is in the outermost interval of a '// &
-                                'contact, near x = '//to_text(model%x(node), 4), remedy)
-         else if (distance < resolved_nodes .and. simulation%slip%is_coarse() .and. holds(state%status(node + side*distance))) then
-            call add_unresolved(unresolved, 'peak_shear'//tensions_at_end(simulation), 'the largest shear is where slip zones '// &
-                                'had too few nodes, near x = '//to_text(model%x(node), 4), remedy)
-         end if
+         had_few_nodes = distance < resolved_nodes .and. simulation%slip%is_coarse() .and. holds(state%status(node + side*distance))
+         if (had_few_nodes) call add_unresolved(unresolved, 'peak_shear'//tensions_at_end(simulation), 'the largest shear is '// &
+                                             'where slip zones had too few nodes, near x = '//to_text(model%x(node), 4), remedy)
+         if (distance > 0) return
+         inner = [(min(max(node - side*i, 1), model%nodes()), i=0, 2)]
+         associate (shear => abs(state%fields%shear(inner)))
+            if (maxval(shear(:2) - shear(2:)) <= hardly*shear(1)) return
+         end associate
+         call add_unresolved(unresolved, 'peak_shear largest_shear', 'the largest shear is in the outermost interval of a '// &
+                             'contact, near x = '//to_text(model%x(node), 4), remedy)
       end associate
    end subroutine check_largest_shear
 
