@@ -640,8 +640,9 @@ contains
       end associate
    end function allowances_of_behaviours
 
-   !> Length over which neighbouring nodes are held next to their friction limit: on a slightly different mesh they may slip. A single
-   !> node may be so near to any edge; and nodes that have just reached it, as at the end of a closed cycle, are those that slip.
+   !> Length over which neighbouring nodes are held next to their friction limit: on a slightly different mesh they may slip. A
+   !> single node may be so near to any edge; and nodes that have just reached it, as at the end of a closed cycle, are those that
+   !> slip.
    real(wp) function marginal_length(model, state) result(length)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state

@@ -485,7 +485,7 @@ contains
          if (can_refine(simulation)) remedy = "use refine='edges' in &mesh, or more nodes"
          had_few_nodes = distance < resolved_nodes .and. simulation%slip%is_coarse() .and. holds(state%status(node + side*distance))
          if (had_few_nodes) call add_unresolved(unresolved, 'peak_shear'//tensions_at_end(simulation), 'the largest shear is '// &
-                                             'where slip zones had too few nodes, near x = '//to_text(model%x(node), 4), remedy)
+                                                'where slip zones had too few nodes, near x = '//to_text(model%x(node), 4), remedy)
          if (distance > 0) return
          inner = [(min(max(node - side*i, 1), model%nodes()), i=0, 2)]
          associate (shear => abs(state%fields%shear(inner)))
@@ -529,8 +529,8 @@ contains
 
    contains
 
-      !> Names of the peaks, after blanks, if the pressure is largest between nodes `first` and `last`: with full coupling the jump of
-      !> the shear gives the pressure a logarithm there.
+      !> Names of the peaks, after blanks, if the pressure is largest between nodes `first` and `last`: with full coupling the jump
+      !> of the shear gives the pressure a logarithm there.
       function peaks_at(first, last) result(names)
          integer, intent(in) :: first, last
          character(len=25) :: names

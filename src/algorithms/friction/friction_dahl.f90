@@ -286,8 +286,8 @@ contains
       call find_slope(self, room, stiffness, steepness)
    end subroutine find_stiffness
 
-   !> K and minus its derivative by f/(mu p), force/length^3, where `room` = 1 - f/(mu p). The law is continued beyond the limit with
-   !> its sign (eq. 3.9), and with the stiffness of the limit beyond that against the motion; converged states are not there.
+   !> K and minus its derivative by f/(mu p), force/length^3, where `room` = 1 - f/(mu p). The law is continued beyond the limit
+   !> with its sign (eq. 3.9), and with the stiffness of the limit beyond that against the motion; converged states are not there.
    elemental subroutine find_slope(self, room, stiffness, steepness)
       class(dahl_law_type), intent(in) :: self
       real(wp), intent(in) :: room

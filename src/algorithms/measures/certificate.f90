@@ -9,6 +9,7 @@ module mfv_certificate
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
    use mfv_friction_law, only: friction_point_type
+   use mfv_inequalities, only: slack
    use mfv_kinds, only: wp
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift
    use mfv_node_status
@@ -227,9 +228,9 @@ contains
          if (state%status(i) /= node_open) then
             closed_gap = largest_or_nan(closed_gap, gap)
             undeformed = max(undeformed, abs(model%initial_gap(i)))
-            negative_pressure = max(negative_pressure, -state%fields%pressure(i))
+            negative_pressure = max(negative_pressure, -lack(event_open))
          else
-            if (model%can_touch(i)) open_gap = max(open_gap, -gap)
+            if (model%can_touch(i)) open_gap = max(open_gap, -lack(event_close))
             open_traction_size = max(open_traction_size, abs(state%fields%pressure(i)) + abs(state%fields%shear(i)))
          end if
       end do
@@ -240,6 +241,14 @@ contains
       call note(self, gap_sign, open_gap, scale)
       call note(self, open_traction, open_traction_size, self%traction_scale)
       call note(self, pressure_sign, negative_pressure, self%traction_scale)
+
+   contains
+
+      pure real(wp) function lack(event)
+         integer, intent(in) :: event
+
+         lack = slack(event, gap, state%fields%pressure(i), 0.0_wp, 0.0_wp, 0.0_wp)
+      end function lack
    end subroutine check_normal_contact
 
    !> Equalities and inequalities of slip and shear traction. Over a large increment slip counts from its own reference, which
@@ -265,7 +274,8 @@ contains
             if (status == node_open) cycle
             limit = model%static_friction(i)*after%fields%pressure(i)
             if (status == node_frictionless) limit = 0.0_wp
-            beyond_limit = max(beyond_limit, abs(after%fields%shear(i)) - limit)
+            beyond_limit = max(beyond_limit, -minval(slack([event_slip_right, event_slip_left], 0.0_wp, 0.0_wp, &
+                                                           after%fields%shear(i), limit, 0.0_wp)))
             slipped = after%fields%tangential(i) - after%fields%motion(motion_shift) &
                       - (before%fields%tangential(i) - before%fields%motion(motion_shift))
             if (is_large) then

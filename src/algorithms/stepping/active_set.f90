@@ -13,6 +13,7 @@ module mfv_active_set
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path, only: contact_path_type, segment_type
    use mfv_contact_system
+   use mfv_inequalities, only: inequalities, is_required, slack, status_after
    use mfv_kinds, only: pi, wp
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, control_force, control_displacement
    use mfv_node_status
@@ -384,7 +385,8 @@ contains
       integer, intent(out) :: wanted(:)
       logical, intent(in), optional :: held(:)
       real(wp), dimension(size(wanted)) :: gap, slipped
-      real(wp) :: traction, motion, tolerance
+      real(wp) :: traction, motion, tolerance, allowed(size(inequalities))
+      logical :: violated(size(inequalities))
       integer :: i, closed
 
       tolerance = max(round_off, path%system%tolerance)
@@ -398,17 +400,14 @@ contains
       closed = node_frictionless
       if (segment%friction .and. path%model%tangential) closed = node_stick
       wanted = path%state%status
+      allowed = merge(motion, traction, inequalities == event_close .or. inequalities == event_stick)
       do i = 1, size(wanted)
-         if (.not. in_contact(wanted(i))) then
-            if (path%model%can_touch(i) .and. gap(i) < -motion) wanted(i) = closed
-         else if (fields%pressure(i) < -traction) then
-            wanted(i) = node_open
-         else if (wanted(i) == node_stick) then
-            if (abs(fields%shear(i)) > path%model%static_friction(i)*fields%pressure(i) + traction) &
-               wanted(i) = merge(node_slip_left, node_slip_right, fields%shear(i) > 0.0_wp)
-         else if (slip_sign(wanted(i))*slipped(i) < -motion) then
-            wanted(i) = node_stick
-         end if
+         violated = is_required(inequalities, wanted(i)) .and. &
+                    slack(inequalities, gap(i), fields%pressure(i), fields%shear(i), &
+                          path%model%static_friction(i)*fields%pressure(i), slip_sign(wanted(i))*slipped(i)) < -allowed
+         if (.not. path%model%can_touch(i)) violated = violated .and. inequalities /= event_close
+         if (any(violated)) wanted(i) = status_after(inequalities(findloc(violated, .true., dim=1)), wanted(i), &
+                                                     closed == node_stick, 0, node_stick)
       end do
       if (closed == node_stick) call follow_neighbours(path%state%status, wanted)
    end subroutine find_wanted

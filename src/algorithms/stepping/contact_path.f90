@@ -9,7 +9,7 @@ module mfv_contact_path
    use mfv_contact_system
    use mfv_derivatives, only: derivatives_type, parameter_type
    use mfv_error, only: error_type, set_error
-   use mfv_event_search, only: status_after
+   use mfv_inequalities, only: status_after
    use mfv_friction_law, only: friction_event_type, friction_point_type, most_events
    use mfv_history, only: history_type
    use mfv_kinds, only: wp

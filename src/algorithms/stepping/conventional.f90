@@ -11,9 +11,9 @@ module mfv_conventional
    use mfv_contact_path
    use mfv_contact_system
    use mfv_error, only: error_type
-   use mfv_event_search, only: status_after
    use mfv_first_violation, only: most_residual
    use mfv_friction_law, only: memory_size
+   use mfv_inequalities, only: is_required, slack, status_after
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_approach, motion_shift, control_force, control_displacement
    use mfv_node_status
@@ -211,7 +211,7 @@ contains
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(in) :: trial
       type(repair_type) :: repair
-      real(wp), dimension(size(path%state%status)) :: gap, over_stress, slipped
+      real(wp), dimension(size(path%state%status)) :: gap, limit, slipped
       real(wp) :: traction, motion
 
       associate (status => path%state%status)
@@ -219,20 +219,29 @@ contains
          motion = round_off*max(maxval(abs(trial%normal)), maxval(abs(trial%tangential)), &
                                 abs(trial%motion(motion_approach)), abs(trial%motion(motion_shift)))
          gap = path%model%gap(trial)
-         repair = worst(event_close, -gap, path%model%can_touch .and. .not. in_contact(status), motion)
-         if (repair%kind == event_none) repair = worst(event_open, -trial%pressure, in_contact(status), traction)
+         limit = path%model%static_friction*trial%pressure
+         slipped = trial%slip() - path%state%fields%slip()
+         repair = worst(event_close, lack(event_close), path%model%can_touch .and. is_required(event_close, status), motion)
+         if (repair%kind == event_none) repair = worst(event_open, lack(event_open), is_required(event_open, status), traction)
          if (repair%kind /= event_none) return
-         over_stress = abs(trial%shear) - path%model%static_friction*trial%pressure
-         repair = worst(event_slip_right, over_stress, holds(status), traction)
+         repair = worst(event_slip_right, min(lack(event_slip_right), lack(event_slip_left)), &
+                        is_required(event_slip_right, status), traction)
          if (repair%kind /= event_none) then
             if (trial%shear(repair%node) > 0.0_wp) repair%kind = event_slip_left
             return
          end if
-         slipped = trial%slip() - path%state%fields%slip()
          if (path%model%tangential .and. any(slips(status))) call mend_bristles(path, trial, slipped, repair, traction)
-         if (repair%kind == event_none) &
-            repair = worst(event_stick, -motion_sign(status)*slipped, slips(status) .or. creeps(status), motion)
+         if (repair%kind == event_none) repair = worst(event_stick, lack(event_stick), slips(status) .or. creeps(status), motion)
       end associate
+
+   contains
+
+      function lack(event)
+         integer, intent(in) :: event
+         real(wp) :: lack(size(gap))
+
+         lack = slack(event, gap, trial%pressure, trial%shear, limit, motion_sign(path%state%status)*slipped)
+      end function lack
    end function worst_violation
 
    !> Repair of slipping nodes whose bristles take up the load again, for laws with creep. Their `slipped` is then set to zero.
@@ -248,21 +257,21 @@ contains
          if (law%sticks) return
          yields = law%over_stress(motion_sign(status)*slipped, law%limit_fraction*path%model%static_friction &
                                   *(trial%pressure - path%state%fields%pressure))
-         repair = worst(event_stick, -yields, slips(status), allowed)
+         repair = worst(event_stick, yields, slips(status), allowed)
          where (slips(status)) slipped = 0.0_wp
       end associate
    end subroutine mend_bristles
 
-   !> The node of `mask` with the largest violation, if beyond `allowed`.
-   pure type(repair_type) function worst(kind, violation, mask, allowed)
+   !> The node of `mask` that lacks least, if that is negative beyond `allowed`.
+   pure type(repair_type) function worst(kind, lack, mask, allowed)
       integer, intent(in) :: kind
-      real(wp), intent(in) :: violation(:), allowed
+      real(wp), intent(in) :: lack(:), allowed
       logical, intent(in) :: mask(:)
 
       if (.not. any(mask)) return
-      if (.not. maxval(violation, mask=mask) > allowed) return
+      if (.not. minval(lack, mask=mask) < -allowed) return
       worst%kind = kind
-      worst%node = maxloc(violation, mask=mask, dim=1)
+      worst%node = minloc(lack, mask=mask, dim=1)
    end function worst
 
    !> Make a repair.

@@ -19,7 +19,7 @@ module mfv_first_violation
    use mfv_contact_system
    use mfv_derivative_increments, only: differentiate_increment
    use mfv_error, only: error_type
-   use mfv_event_search, only: status_after
+   use mfv_inequalities, only: status_after
    use mfv_increment
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_approach, control_force

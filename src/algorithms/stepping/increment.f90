@@ -14,7 +14,7 @@ module mfv_increment
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path, only: contact_path_type
    use mfv_contact_system
-   use mfv_event_search, only: find_violations, violations_type
+   use mfv_inequalities, only: find_violations, violations_type
    use mfv_friction_law, only: friction_event_type
    use mfv_kinds, only: wp
    use mfv_node_status

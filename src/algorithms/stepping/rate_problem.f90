@@ -10,6 +10,7 @@
 module mfv_rate_problem
    use mfv_contact_path, only: contact_path_type
    use mfv_contact_system
+   use mfv_inequalities, only: slack, status_after
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_approach
    use mfv_node_status
@@ -17,9 +18,6 @@ module mfv_rate_problem
    implicit none
    private
    public :: find_statuses_by_rates
-
-   !> Type of an unknown z of a node: a gap, or slip to the right (1) or left (-1).
-   integer, parameter :: opens = 0
 
 contains
 
@@ -30,7 +28,7 @@ contains
       type(constraints_type), intent(in) :: constraints
       logical, intent(out) :: found
       type(constraints_type) :: base
-      integer, allocatable :: node(:), sort(:)
+      integer, allocatable :: node(:), event(:)
       real(wp), allocatable :: matrix(:, :), constant(:), z(:)
       integer :: status(size(path%state%status)), i
       logical :: singular, mask(size(path%state%status))
@@ -40,31 +38,29 @@ contains
       if (path%model%scene%friction%acts()) then
          if (.not. path%model%scene%friction%law%is_linear .or. path%model%scene%friction%law%drops) return
       end if
-      call find_undecided(path, node, sort)
+      call find_undecided(path, node, event)
       if (size(node) == 0) return
       base = constraints
       base%status = path%state%status
       base%stuck_slip = path%state%fields%slip()
       base%status(node) = merge(node_stick, node_frictionless, path%model%tangential)
-      call influence(path, base, node, sort, matrix, constant, singular)
+      call influence(path, base, node, event, matrix, constant, singular)
       if (singular) return
       call lemke(matrix, constant, z, found)
       if (.not. found) return
       status = base%status
       do i = 1, size(node)
-         if (.not. z(i) > 0.0_wp) cycle
-         if (sort(i) == opens) status(node(i)) = node_open
-         if (sort(i) > 0 .and. status(node(i)) /= node_open) status(node(i)) = node_slip_right
-         if (sort(i) < 0 .and. status(node(i)) /= node_open) status(node(i)) = node_slip_left
+         if (z(i) > 0.0_wp .and. in_contact(status(node(i)))) &
+            status(node(i)) = status_after(event(i), status(node(i)), .true., 0, node_stick)
       end do
       mask = status /= path%state%status
       call path%set_status(mask, status)
    end subroutine find_statuses_by_rates
 
-   !> The unknowns: node and type of each.
-   subroutine find_undecided(path, node, sort)
+   !> The unknowns: node and event of each, at which its inequality is violated.
+   subroutine find_undecided(path, node, event)
       class(contact_path_type), intent(in) :: path
-      integer, allocatable, intent(out) :: node(:), sort(:)
+      integer, allocatable, intent(out) :: node(:), event(:)
       real(wp), parameter :: closed = 1.0e-12_wp
       real(wp), dimension(size(path%state%status)) :: gap
       real(wp) :: pressure_scale, gap_scale, limit
@@ -73,31 +69,31 @@ contains
       gap = path%model%gap(path%state%fields)
       gap_scale = max(maxval(abs(path%model%initial_gap)), abs(path%state%fields%motion(motion_approach)))
       pressure_scale = path%certificate%traction_scale
-      allocate (node(0), sort(0))
+      allocate (node(0), event(0))
       do i = 1, size(gap)
          associate (pressure => path%state%fields%pressure(i), shear => path%state%fields%shear(i))
             if (in_contact(path%state%status(i)) .and. pressure > significant*pressure_scale) then
                limit = path%model%static_friction(i)*pressure
                if (.not. path%model%tangential .or. abs(shear) < limit*(1.0_wp - significant)) cycle
                node = [node, i]
-               sort = [sort, merge(-1, 1, shear > 0.0_wp)]
+               event = [event, merge(event_slip_left, event_slip_right, shear > 0.0_wp)]
             else if (in_contact(path%state%status(i)) .or. &
                      (path%model%can_touch(i) .and. gap(i) <= closed*gap_scale)) then
                node = [node, i]
-               sort = [sort, opens]
+               event = [event, event_open]
                if (.not. path%model%tangential) cycle
                node = [node, i, i]
-               sort = [sort, 1, -1]
+               event = [event, event_slip_right, event_slip_left]
             end if
          end associate
       end do
    end subroutine find_undecided
 
    !> M and q, each scaled by its largest entry.
-   subroutine influence(path, base, node, sort, matrix, constant, singular)
+   subroutine influence(path, base, node, event, matrix, constant, singular)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(in) :: base
-      integer, intent(in) :: node(:), sort(:)
+      integer, intent(in) :: node(:), event(:)
       real(wp), allocatable, intent(out) :: matrix(:, :), constant(:)
       logical, intent(out) :: singular
       type(constraints_type) :: moved
@@ -110,10 +106,10 @@ contains
          if (singular) return
          moved = base
          allocate (moved%gap_rate(size(base%status)), moved%slip_rate(size(base%status)), source=0.0_wp)
-         if (sort(j) == opens) then
+         if (event(j) == event_open) then
             moved%gap_rate(node(j)) = path%model%length()
          else
-            moved%slip_rate(node(j)) = sort(j)*path%model%length()
+            moved%slip_rate(node(j)) = merge(1, -1, event(j) == event_slip_right)*path%model%length()
          end if
          call respond(moved, matrix(:, j))
          matrix(:, j) = matrix(:, j) - constant
@@ -132,8 +128,8 @@ contains
          w = 0.0_wp
          call path%system%solve(path%model, constraints, path%state%fields, response, singular)
          if (singular) return
-         w = response%rate%pressure(node)
-         where (sort /= opens) w = path%model%static_friction(node)*w + sort*response%rate%shear(node)
+         w = slack(event, 0.0_wp, response%rate%pressure(node), response%rate%shear(node), &
+                   path%model%static_friction(node)*response%rate%pressure(node), 0.0_wp)
       end subroutine respond
    end subroutine influence
 
