@@ -36,7 +36,7 @@ contains
       type(response_type), intent(inout) :: response
       logical, intent(out) :: singular
 
-      call choose(self, count(in_contact(constraints%status)))
+      call choose(self, count(in_contact(constraints%status)), constraints%one_by_one)
       if (self%iterates) then
          call solve_by(self%krylov)
       else
@@ -64,14 +64,15 @@ contains
       end subroutine solve_by
    end subroutine solve
 
-   !> Choose by the number of nodes in contact.
-   subroutine choose(self, contact)
+   !> Choose by the number of nodes in contact, and whether they change their status one by one.
+   subroutine choose(self, contact, one_by_one)
       class(automatic_system_type), intent(inout) :: self
       integer, intent(in) :: contact
+      logical, intent(in) :: one_by_one
       integer :: most
 
-      most = merge(self%most_one_by_one, self%most, self%one_by_one)
-      self%iterates = contact > merge(most/2, most, self%iterates .and. .not. self%one_by_one)
+      most = merge(self%most_one_by_one, self%most, one_by_one)
+      self%iterates = contact > merge(most/2, most, self%iterates .and. .not. one_by_one)
       if (self%iterates) then
          if (allocated(self%reduced)) deallocate (self%reduced)
          if (allocated(self%krylov)) return

@@ -47,6 +47,8 @@ module mfv_contact_system
       integer :: kind = rates_of_loads
       !> Whether only rates are wanted: the state may be the first guess.
       logical :: rates_only = .false.
+      !> Whether nodes change their status one by one, from event to event, which decides on the solver.
+      logical :: one_by_one = .false.
    end type constraints_type
 
    !> Prescribed values of the state, or of its rates per unit of load.
@@ -78,8 +80,6 @@ module mfv_contact_system
       real(wp) :: allowed = 0.0_wp, allowed_in_rates = 0.0_wp
       !> Whether the last solve failed although the constraints may determine the fields: the iteration did not converge.
       logical :: gave_up = .false.
-      !> Whether nodes change their status one by one, from event to event.
-      logical :: one_by_one = .false.
    contains
       procedure(solve_interface), deferred :: solve
    end type contact_system_type

@@ -84,9 +84,6 @@ module mfv_contact_path
       type(recent_intervals_type) :: recent
       !> Whether every event is recorded, or only what the caller records.
       logical :: record_events = .true.
-      !> What short steps are compared with, as a part of the segment: all of it, or, where it began without load, what is done.
-      !> Flat tips touch node after node at loads that are tiny parts of it.
-      real(wp) :: unit_step = 1.0_wp
       !> Dissipation at the start of the segment, force.
       real(wp), private :: start_dissipation = 0.0_wp
    contains
@@ -426,6 +423,7 @@ contains
          constraints%load(motion_approach) = load_type(control_displacement, self%state%fields%motion(motion_approach), 0.0_wp)
       end if
 
+      constraints%one_by_one = .true.
       slides = .not. any(holds(self%state%status))
       if (slides .and. constraints%load(motion_shift)%control == control_force) then
          call hold_motion(self, constraints, motion_shift, ready, error)

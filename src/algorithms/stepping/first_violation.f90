@@ -79,24 +79,12 @@ contains
       type(segment_type), intent(in) :: segment
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
-
-      call path%start_segment(segment, error)
-      if (allocated(error)) return
-      path%system%one_by_one = .true.
-      call advance_by_events(path, segment, observer, error)
-      path%system%one_by_one = .false.
-   end subroutine apply_by_violations
-
-   !> Advance through a segment that has started, from event to event. Errors as apply_by_violations.
-   subroutine advance_by_events(path, segment, observer, error)
-      class(contact_path_type), intent(inout) :: path
-      type(segment_type), intent(in) :: segment
-      class(observer_type), intent(inout), optional :: observer
-      type(error_type), allocatable, intent(out) :: error
       type(event_progress_type) :: progress
       type(constraints_type) :: constraints
       integer :: nodes
 
+      call path%start_segment(segment, error)
+      if (allocated(error)) return
       progress%from_nothing = .not. any(path%state%fields%pressure > 0.0_wp)
       nodes = size(path%state%status)
       do
@@ -115,7 +103,7 @@ contains
          call change_statuses(path, segment, progress%done, progress%increment, progress%iteration, error)
          if (allocated(error)) return
       end do
-   end subroutine advance_by_events
+   end subroutine apply_by_violations
 
    !> Find the next increment at fixed statuses and take it. If its length is zero (`progress%moved` is false), only statuses
    !> change. Errors as apply_by_violations.
@@ -144,7 +132,7 @@ contains
          call path%find_constraints(segment, progress%done, progress%iteration, constraints, ready, error)
          if (allocated(error)) return
          if (.not. ready) cycle
-         path%unit_step = merge(progress%done, 1.0_wp, progress%from_nothing)
+         progress%increment%unit_step = merge(progress%done, 1.0_wp, progress%from_nothing)
          passed = .false.
          if (progress%since > many_events) call pass_accumulation(path, constraints, 1.0_wp - progress%done, milestone_spacing, &
                                                                   progress%iteration%rate_tolerance, progress%increment, passed)
@@ -154,12 +142,13 @@ contains
          if (allocated(error)) return
          if (ready) exit
       end do
-      if (.not. progress%increment%step > shortest_step(path)) return
+      if (has_no_length(path, progress%increment)) return
       call path%record_changes(segment, progress%iteration)
-      associate (step => progress%increment%step)
-     progress%at_end = .not. relaxing .and. step*(1.0_wp + tie_tolerance(path)) + last_step(path, segment) >= 1.0_wp - progress%done
+      associate (step => progress%increment%step, unit_step => progress%increment%unit_step)
+         progress%at_end = .not. relaxing .and. step*(1.0_wp + tie_tolerance(path)) &
+                           + last_step(path, segment, unit_step) >= 1.0_wp - progress%done
          if (progress%at_end) step = 1.0_wp - progress%done
-         if (relaxing .and. step*(1.0_wp + tie_tolerance(path)) + shortest_step(path) >= 1.0_wp) step = 1.0_wp
+         if (relaxing .and. step*(1.0_wp + tie_tolerance(path)) + shortest_step(path, unit_step) >= 1.0_wp) step = 1.0_wp
          relaxing_nodes = path%is_releasing()
          call advance(path, progress%increment, relaxing, error)
          if (allocated(error)) return
@@ -172,7 +161,7 @@ contains
          if (progress%at_end) return
          call renew(progress%iteration)
          progress%standing = 0
-         if (.not. relaxing) progress%tiny = merge(progress%tiny + 1, 0, step < path%unit_step*tie_tolerance(path))
+         if (.not. relaxing) progress%tiny = merge(progress%tiny + 1, 0, step < unit_step*tie_tolerance(path))
       end associate
       progress%since = progress%since + 1
       if (progress%done > progress%milestone + milestone_spacing) then
@@ -183,12 +172,13 @@ contains
 
    !> The shortest step at the end of a segment. Where the normal force decreases to zero, its rest can be round-off of the largest
    !> force so far; the load then advances to the end.
-   pure real(wp) function last_step(path, segment)
+   pure real(wp) function last_step(path, segment, unit_step)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
+      real(wp), intent(in) :: unit_step
       real(wp) :: negligible
 
-      last_step = shortest_step(path)
+      last_step = shortest_step(path, unit_step)
       negligible = max(rounding, path%system%tolerance)*path%certificate%force_scale(motion_approach)
       associate (normal => segment%load(motion_approach))
          if (normal%control /= control_force .or. .not. normal%rate < 0.0_wp) return
@@ -349,6 +339,7 @@ contains
 
       call path%loads_at(segment, done, constraints)
       call path%set_rows(constraints, .false.)
+      constraints%one_by_one = .true.
       call find_statuses_by_rates(path, constraints, found)
    end subroutine find_statuses_at_once
 

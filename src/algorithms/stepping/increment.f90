@@ -17,20 +17,24 @@ module mfv_increment
    use mfv_inequalities, only: find_violations, violations_type
    use mfv_friction_law, only: friction_event_type
    use mfv_kinds, only: wp
+   use mfv_motions, only: motion_shift
    use mfv_node_status
    use mfv_scene, only: integration_explicit, stepping_nominal
-   use mfv_tolerances, only: certified, significant, visible
+   use mfv_tolerances, only: certified, rounding, significant, visible
    implicit none
    private
-   public :: increment_type, find_increment, shortest_step, tie_tolerance
+   public :: increment_type, find_increment, has_no_length, shortest_step, tie_tolerance
 
-   !> Steps below `zero_step`, a fraction of path%unit_step, count as zero; steps that differ by less than the fraction `least_tie`
-   !> are tied.
+   !> Steps below `zero_step`, a fraction of increment%unit_step, count as zero; steps that differ by less than the fraction
+   !> `least_tie` are tied.
    real(wp), parameter :: zero_step = 1.0e-13_wp, least_tie = certified
 
    type :: increment_type
       type(response_type) :: response
       type(violations_type) :: violations
+      !> What short steps are compared with, as a part of the segment: all of it, or, where it began without load, what is done.
+      !> Flat tips touch node after node at loads that are tiny parts of it.
+      real(wp) :: unit_step = 1.0_wp
       !> Length as a fraction of the segment (of the stress drop); and whether a violation ends the increment.
       real(wp) :: step = 0.0_wp
       !> Violations that occur up to this step, within their round-off, occur together at its end.
@@ -51,11 +55,20 @@ contains
 
    !> Steps below this part of the segment count as zero: the tolerance of the linear solver, but at most `least_tie`, since
    !> the first events of a fine mesh are close to each other.
-   pure real(wp) function shortest_step(path)
+   pure real(wp) function shortest_step(path, unit_step)
       class(contact_path_type), intent(in) :: path
+      real(wp), intent(in) :: unit_step
 
-      shortest_step = path%unit_step*max(zero_step, min(path%system%tolerance, least_tie))
+      shortest_step = unit_step*max(zero_step, min(path%system%tolerance, least_tie))
    end function shortest_step
+
+   !> Whether an increment has no length, within the tolerance.
+   pure logical function has_no_length(path, increment)
+      class(contact_path_type), intent(in) :: path
+      type(increment_type), intent(in) :: increment
+
+      has_no_length = increment%step <= shortest_step(path, increment%unit_step)
+   end function has_no_length
 
    !> Find an increment. `constraints`: from contact_path_type%find_constraints. `left`: the rest of the segment (1 in a stress
    !> drop). `relaxing`: whether over-stress relaxes at a fixed load. `rate_tolerance`: rates below this fraction of the largest
@@ -116,8 +129,8 @@ contains
                            increment%violations)
       first = min(minval(increment%violations%step), never)
       increment%step = min(first, longest)
-      increment%reach = first*(1.0_wp + tie_tolerance(path)) + shortest_step(path)
-      increment%ends_in_event = first*(1.0_wp - tie_tolerance(path)) - shortest_step(path) <= longest
+      increment%reach = first*(1.0_wp + tie_tolerance(path)) + shortest_step(path, increment%unit_step)
+      increment%ends_in_event = first*(1.0_wp - tie_tolerance(path)) - shortest_step(path, increment%unit_step) <= longest
    end subroutine search
 
    !> Integrate friction that is not linear over an increment, with a controlled error or explicitly.
@@ -143,7 +156,7 @@ contains
       end if
       ! The tangent is undefined at first contact; the traction follows from the increment itself.
       touched = any(creeps(path%state%status) .and. .not. path%state%fields%pressure > 0.0_wp)
-      if (increment%step <= shortest_step(path) .and. .not. touched) return
+      if (has_no_length(path, increment) .and. .not. touched) return
       if (.not. path%trial > 0.0_wp) path%trial = first_trial
       tolerance = path%model%scene%method%allowed_in_friction()*part_of_segment(path, increment%response%rate)
       law_sticks = path%model%scene%friction%law%sticks
@@ -161,16 +174,16 @@ contains
          if (error > 0.0_wp) change = min(most_growth, safety*sqrt(tolerance/error))
          if (.not. agrees) change = min(change, 0.25_wp)
          ! The tangents allow a step: an event before any is due to the length.
-         misled = agrees .and. law_sticks .and. increment%step <= shortest_step(path) .and. .not. (touched .or. length < shortest)
+         misled = agrees .and. law_sticks .and. has_no_length(path, increment) .and. .not. (touched .or. length < shortest)
          if (misled) change = least_shrink
          accepted = agrees .and. error <= tolerance .and. .not. misled
          if (accepted .or. length < shortest) exit
          ! The error is that of the step, and an event may have ended this far before the length.
-         if (agrees .and. increment%step > shortest_step(path)) length = min(length, increment%step)
+         if (agrees .and. .not. has_no_length(path, increment)) length = min(length, increment%step)
          length = length*max(change, least_shrink)
       end do
       increment%diverges = .not. accepted
-      if (increment%step <= shortest_step(path)) return
+      if (has_no_length(path, increment)) return
       if (was_cut_too_short(increment, length)) then
          path%trial = max(increment%step*change, 10*shortest)
          return
@@ -220,7 +233,7 @@ contains
          call path%system%solve(path%model, secants, path%state%fields, increment%response, increment%singular)
          if (increment%singular) return
          call search(path, rate_tolerance, step, increment)
-         if (abs(increment%step - step) <= same*step + shortest_step(path) .or. increment%step <= shortest_step(path)) return
+  if (abs(increment%step - step) <= same*step + shortest_step(path, increment%unit_step) .or. has_no_length(path, increment)) return
          step = increment%step
          after = path%state%fields%plus(step, increment%response%rate)
       end do
@@ -251,10 +264,25 @@ contains
          call path%system%solve(path%model, lines, path%state%fields, response, singular)
          if (singular) return
          after = response%state%plus(step, response%rate)
-         converges = difference(path, before, after, 0.0_wp) <= max(close_enough, path%system%tolerance)
+         converges = difference(path, before, after, 0.0_wp) <= max(close_enough, path%system%tolerance) .and. &
+                     have_same_slip(path, before, after)
          if (converges) return
       end do
    end subroutine find_end
+
+   !> Whether two fields have the same slip since the start of the increment. (Where all other nodes slide, equilibrium gives the
+   !> traction of the last one, and the slip follows from its law alone.)
+   logical function have_same_slip(path, one, other)
+      class(contact_path_type), intent(in) :: path
+      type(contact_fields_type), intent(in) :: one, other
+      real(wp) :: change, scale
+
+      associate (start => path%state%fields%slip())
+         change = maxval(abs(other%slip() - start))
+         scale = max(maxval(abs(other%tangential)), abs(other%motion(motion_shift)))
+      end associate
+      have_same_slip = maxval(abs(one%slip() - other%slip())) <= max(certified, path%system%tolerance)*change + rounding*scale
+   end function have_same_slip
 
    !> A guess for creeping nodes that have just touched: at most half the friction limit.
    subroutine guess_touching(path, fields)
