@@ -64,6 +64,21 @@ def test_partial_slip_wears_until_the_stick_zone_carries_the_load() -> None:
     assert errors[1] < 3e-3 and errors[0] > 1.5 * errors[1]
 
 
+def test_peaks_where_the_worn_part_ends_are_resolved_or_said_not_to_be() -> None:
+    """After few cycles the peak pressure agrees on all meshes; after many it grows with the number of nodes, without a limit."""
+    meshes = (31, 61, 121, 241)
+    few = [worn(30, mesh=mfv.Mesh(nodes=nodes), wear={"coefficient": 0.3}) for nodes in meshes]
+    many = [worn(300, mesh=mfv.Mesh(nodes=nodes), wear={"coefficient": 0.3}) for nodes in meshes]
+    peaks = np.array([[result.observables.peak_pressure for result in results] for results in (few, many)])
+    assert np.ptp(peaks[0]) < 1e-3 * peaks[0, -1]
+    assert np.all(peaks[1, 1:] > 1.25 * peaks[1, :-1])
+    names = {"peak_pressure", "peak_shear", "largest_pressure"}
+    for result in few:
+        assert not names & set(result.attributes["unresolved"].split())
+    for result in many:
+        assert names <= set(result.attributes["unresolved"].split())
+
+
 @pytest.mark.parametrize("run", [worn, sliding])
 def test_the_worn_surfaces_pressed_anew_have_the_same_pressure(run: Any) -> None:
     result = run(300)

@@ -25,7 +25,7 @@ module mfv_discretisation_error
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
    use mfv_tolerances, only: certified, significant
-   use mfv_zone_edges, only: find_patches, largest_shear, patch_type, slipping_run, zone_type, zones_of
+   use mfv_zone_edges, only: find_patches, held, largest_shear, patch_type, slipping_run, zone_type, zones_of
    implicit none
    private
    public :: estimate_error, coarser_scene, scene_on_mesh, fix_cycles, nearest_mesh, allowances_of_behaviours, has_coarser_meshes
@@ -324,7 +324,7 @@ contains
    pure integer function stick_zones(simulation)
       type(simulation_type), intent(in) :: simulation
 
-      stick_zones = size(zones_of(holds(simulation%contact%state%status)))
+      stick_zones = size(zones_of(held(simulation%contact%state)))
    end function stick_zones
 
    !> Observables that are undefined on a coarser mesh are not resolved, nor are those in `others`, separated by blanks, which have
@@ -458,8 +458,7 @@ contains
    end subroutine average
 
    !> Uncertainty of each observable within an interval and by large increments, shape (observable_count); of places the interval
-   !> there. Those of turning points are as large as those of the present state, at the far end of the last cycle at least as those
-   !> there. `values`: of the observables.
+   !> there. Those of turning points are the larger ones of the present state and of the state there. `values`: of the observables.
    function interval_allowances(simulation, values) result(allowances)
       type(simulation_type), intent(in) :: simulation
       real(wp), intent(in) :: values(:)
@@ -612,12 +611,12 @@ contains
          ! Errors of the two edges of one patch add up; those of several patches are independent.
          contact = sqrt(2.0_wp*sum(patches%left_error**2 + patches%right_error**2))
          stick = model%interval()
-         if (any(holds(state%status))) &
+         if (any(held(state))) &
             stick = sqrt(2.0_wp*sum([(sum(patches(i)%stick%left_error**2 + patches(i)%stick%right_error**2), i=1, size(patches))]))
          length = max(sum(patches%length()), model%interval())
          of_behaviour = 0.0_wp
          of_behaviour(error_edges) = 0.5_wp*contact
-         of_behaviour(error_stick) = max(norm2([stick, contact*state%stick_nodes()/max(state%contact_nodes(), 1)]), &
+         of_behaviour(error_stick) = max(norm2([stick, contact*count(held(state))/max(state%contact_nodes(), 1)]), &
                                          marginal_length(model, state))/length
          if (size(patches) > 0) then
             nodal = maxval(abs(state%fields%shear))
@@ -641,8 +640,8 @@ contains
    end function allowances_of_behaviours
 
    !> Length over which neighbouring nodes are held next to their friction limit: on a slightly different mesh they may slip. A
-   !> single node may be so near to any edge; and nodes that have just reached it, as at the end of a closed cycle, are those that
-   !> slip.
+   !> single node may be so near to any edge; and nodes that have just reached it, as at the end of a closed cycle, rest
+   !> there on any mesh.
    real(wp) function marginal_length(model, state) result(length)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state

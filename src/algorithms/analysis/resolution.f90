@@ -461,86 +461,104 @@ contains
    end function can_refine
 
    !> A largest shear at the outermost node of a patch: it lies in the last interval, where the pressure vanishes and limits it. It
-   !> is resolved if it hardly changes from node to node. Or at few nodes from the edge, where slip zones had too few nodes and
-   !> stick now. At a corner of a flat punch it has no limit, which its error bar says.
+   !> is resolved if it hardly changes from node to node. Nor is a largest shear resolved within few nodes of an edge that sticks
+   !> now, if slip zones had too few nodes. At a corner of a flat punch it has no limit, which its error bar says.
    subroutine check_largest_shear(simulation, unresolved)
       type(simulation_type), intent(in) :: simulation
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
-      real(wp), parameter :: hardly = 0.1_wp
+      real(wp), parameter :: least_fall = 0.1_wp
       character(:), allocatable :: remedy
       type(zone_type), allocatable :: zones(:)
       integer :: node, side, distance, inner(0:2), i
-      logical :: had_few_nodes
 
       associate (model => simulation%contact%model, state => simulation%contact%state)
          if (.not. model%tangential) return
          node = maxloc(abs(state%fields%shear), dim=1)
-         if (.not. abs(state%fields%shear(node)) > 0.0_wp) return
          zones = zones_of(in_contact(state%status))
-         zones = pack(zones, zones%first <= node .and. zones%last >= node)
-         distance = min(node - zones(1)%first, zones(1)%last - node)
-         side = merge(-1, 1, node - zones(1)%first == distance)
-         if (is_beyond_corner(model, model%arc(node + side*distance) + side*model%width(node + side*distance))) return
+         zones = pack(zones, zones%first <= node .and. zones%last >= node .and. abs(state%fields%shear(node)) > 0.0_wp)
+         if (size(zones) == 0) return
          remedy = 'use more nodes'
          if (can_refine(simulation)) remedy = "use refine='edges' in &mesh, or more nodes"
-         had_few_nodes = distance < resolved_nodes .and. simulation%slip%is_coarse() .and. holds(state%status(node + side*distance))
-         if (had_few_nodes) call add_unresolved(unresolved, 'peak_shear'//tensions_at_end(simulation), 'the largest shear is '// &
-                                                'where slip zones had too few nodes, near x = '//to_text(model%x(node), 4), remedy)
-         if (distance > 0) return
-         inner = [(min(max(node - side*i, 1), model%nodes()), i=0, 2)]
-         associate (shear => abs(state%fields%shear(inner)))
-            if (maxval(shear(:2) - shear(2:)) <= hardly*shear(1)) return
-         end associate
-         call add_unresolved(unresolved, 'peak_shear largest_shear', 'the largest shear is in the outermost interval of a '// &
-                             'contact, near x = '//to_text(model%x(node), 4), remedy)
+         do side = -1, 1, 2
+            distance = merge(node - zones(1)%first, zones(1)%last - node, side < 0)
+            if (distance >= resolved_nodes) cycle
+            associate (edge => node + side*distance)
+               if (is_beyond_corner(model, model%arc(edge) + side*model%width(edge))) cycle
+               if (simulation%slip%is_coarse() .and. holds(state%status(edge))) then
+                  call add_unresolved(unresolved, trim(merge('peak_shear largest_shear', 'peak_shear              ', &
+                                                             distance == 0))//tensions_at_end(simulation), 'the largest shear '// &
+                                      'is where slip zones had too few nodes, near x = '//to_text(model%x(node), 4), remedy)
+                  return
+               end if
+            end associate
+            if (distance > 0) cycle
+            inner = [(min(max(node - side*i, 1), model%nodes()), i=0, 2)]
+            associate (shear => abs(state%fields%shear(inner)))
+               if (maxval(shear(:2) - shear(2:)) <= least_fall*shear(1)) cycle
+            end associate
+            call add_unresolved(unresolved, 'peak_shear largest_shear', 'the largest shear is in the outermost interval of a '// &
+                                'contact, near x = '//to_text(model%x(node), 4), remedy)
+            return
+         end do
       end associate
    end subroutine check_largest_shear
 
    !> Stick zones without a node, between neighbouring nodes that slip in opposite directions, which change their number. (A maximum
    !> of the shear near the friction limit inside a stick zone is no sign of a slip zone: former edges have one on any mesh.) And
    !> stick zones with few nodes between opposite slip, in which the shear traction changes its sign: the stress along the surface
-   !> would have no limit without them.
+   !> would have no limit without them. The text names the first of them.
    subroutine check_stick_zones(simulation, unresolved)
       type(simulation_type), intent(in) :: simulation
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
       type(zone_type), allocatable :: zones(:)
-      integer :: node
+      logical, allocatable :: hidden(:), narrow(:)
+      character(:), allocatable :: names
+      integer :: i, n
 
-      associate (model => simulation%contact%model, state => simulation%contact%state)
+      associate (model => simulation%contact%model, status => simulation%contact%state%status)
          if (.not. model%tangential .or. .not. allocated(model%scene%friction%law)) return
-         do node = 1, model%nodes() - 1
-            if (slip_sign(state%status(node))*slip_sign(state%status(node + 1)) >= 0) cycle
-            call add_unresolved(unresolved, 'stick_zones'//peaks_at(node, node + 1), 'near x = '//to_text(model%x(node), 4)// &
-                                ' a stick zone has no node', 'use more nodes')
-            exit
-         end do
-         zones = zones_of(holds(state%status))
-         do node = 1, size(zones)
-            associate (first => zones(node)%first, last => zones(node)%last)
-               if (first == 1 .or. last == model%nodes() .or. last - first + 1 >= resolved_nodes) cycle
-               if (slip_sign(state%status(first - 1))*slip_sign(state%status(last + 1)) >= 0) cycle
-               call add_unresolved(unresolved, adjustl(trim(largest_tensions(simulation))//peaks_at(first, last)), 'near x = '// &
-                          to_text(model%x(first), 4)//' a stick zone between opposite slip has only '//to_text(last - first + 1)// &
-                                   trim(merge(' node ', ' nodes', first == last)), 'use more nodes')
-               return
-            end associate
-         end do
+         n = model%nodes()
+         hidden = slip_sign(status(:n - 1))*slip_sign(status(2:)) < 0
+         zones = zones_of(holds(status))
+         narrow = [(is_narrow(zones(i)), i=1, size(zones))]
+         i = findloc(hidden, .true., dim=1)
+         if (i > 0) call add_unresolved(unresolved, 'stick_zones'//peaks_near([(zone_type(i, i + 1), i=1, n - 1)], hidden), &
+                                        'near x = '//to_text(model%x(i), 4)//' a stick zone has no node', 'use more nodes')
+         names = adjustl(trim(largest_tensions(simulation))//peaks_near(zones, narrow))
+         i = findloc(narrow, .true., dim=1)
+         if (i == 0 .or. names == '') return
+         associate (first => zones(i)%first, nodes => zones(i)%last - zones(i)%first + 1)
+          call add_unresolved(unresolved, names, 'near x = '//to_text(model%x(first), 4)//' a stick zone between opposite slip '// &
+                                'has only '//to_text(nodes)//trim(merge(' node ', ' nodes', nodes == 1)), 'use more nodes')
+         end associate
       end associate
 
    contains
 
-      !> Names of the peaks, after blanks, if the pressure is largest between nodes `first` and `last`: with full coupling the jump
-      !> of the shear gives the pressure a logarithm there.
-      function peaks_at(first, last) result(names)
-         integer, intent(in) :: first, last
+      !> Whether a stick zone between opposite slip has few nodes.
+      pure logical function is_narrow(zone)
+         type(zone_type), intent(in) :: zone
+
+         is_narrow = .false.
+         associate (status => simulation%contact%state%status)
+            if (zone%first == 1 .or. zone%last == size(status) .or. zone%last - zone%first + 1 >= resolved_nodes) return
+            is_narrow = slip_sign(status(zone%first - 1))*slip_sign(status(zone%last + 1)) < 0
+         end associate
+      end function is_narrow
+
+      !> Names of the peaks, after blanks, if the pressure is largest in or next to one of the `chosen` zones: with full coupling
+      !> the jump of the shear gives the pressure a logarithm there.
+      function peaks_near(zones, chosen) result(names)
+         type(zone_type), intent(in) :: zones(:)
+         logical, intent(in) :: chosen(:)
          character(len=25) :: names
 
          names = ''
          if (.not. simulation%contact%model%compliance%elastic_block(block_wt)) return
          associate (peak => maxloc(simulation%contact%state%fields%pressure, dim=1))
-            if (peak >= first - 1 .and. peak <= last + 1) names = ' peak_pressure peak_shear'
+            if (any(chosen .and. zones%first <= peak + 1 .and. zones%last >= peak - 1)) names = ' peak_pressure peak_shear'
          end associate
-      end function peaks_at
+      end function peaks_near
    end subroutine check_stick_zones
 
    !> Slip that vanishes from cycle to cycle: whether nodes at their friction limit still slip a little is a matter of the mesh.
@@ -596,16 +614,16 @@ contains
    real(wp) function pressure_at_worn_kink(model, state) result(added)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
-      real(wp), parameter :: large = 0.7_wp
+      real(wp), parameter :: near_largest = 0.7_wp
       real(wp) :: slope(model%nodes() - 1)
       logical :: touching(model%nodes())
       integer :: node
 
-      slope = (state%worn(2:) - state%worn(:model%nodes() - 1))/(model%x(2:) - model%x(:model%nodes() - 1))
+      slope = (state%worn(2:) - state%worn(:model%nodes() - 1))/(model%arc(2:) - model%arc(:model%nodes() - 1))
       touching = in_contact(state%status)
       added = 0.0_wp
       do node = 2, model%nodes() - 1
-         if (.not. all(touching(node - 1:node + 1)) .or. state%fields%pressure(node) < large*maxval(state%fields%pressure)) cycle
+     if (.not. all(touching(node - 1:node + 1)) .or. state%fields%pressure(node) < near_largest*maxval(state%fields%pressure)) cycle
          added = max(added, model%compliance%modulus*abs(slope(node) - slope(node - 1))/pi)
       end do
    end function pressure_at_worn_kink

@@ -8,7 +8,8 @@
 !> bristles take up the load again.
 !>
 !> For a creeping node tau1 = tau0 - K (s1 - s0) with K at the start of the increment (appendix B) or, in second order, at its
-!> midpoint. The line is this equation linearised about the expected end (Newton), and exact if that is right.
+!> midpoint. The line is the tangent of tau1(s1, p1) by this equation at the expected end (Newton), and exact if that is right: the
+!> bristle load is solved for at the slip of the guess, whose own load may be far beyond the limit.
 module mfv_friction_dahl
    use mfv_friction_law
    use mfv_kinds, only: wp
@@ -181,7 +182,8 @@ contains
       real(wp) :: force, limit, steepness
 
       if (creeps(status)) then
-         call find_stiffness(self, way(motion_sign(status), before, after), before, after, force, limit, row%stiffness, steepness)
+         call find_stiffness(self, guessed_direction(motion_sign(status), before, after), before, after, force, limit, &
+                             row%stiffness, steepness)
          row%stiffness = -row%stiffness
          row%offset = before%shear - row%stiffness*before%slip
       else
@@ -191,12 +193,12 @@ contains
 
    !> The direction of a guess, which is that of the motion, `direction`, or against it. With the stiffness of the wrong one the
    !> equations may have no solution, and the reversal would not be found.
-   pure integer function way(direction, before, after)
+   pure integer function guessed_direction(direction, before, after)
       integer, intent(in) :: direction
       type(friction_point_type), intent(in) :: before, after
 
-      way = merge(-direction, direction, direction*(after%slip - before%slip) < 0.0_wp)
-   end function way
+      guessed_direction = merge(-direction, direction, direction*(after%slip - before%slip) < 0.0_wp)
+   end function guessed_direction
 
    !> The tangent of tau1(s1, p1) of a creeping node, from F = tau1 - tau0 + K (s1 - s0) = 0.
    pure function creeping_row(self, direction, before, after) result(row)
@@ -204,15 +206,15 @@ contains
       integer, intent(in) :: direction
       type(friction_point_type), intent(in) :: before, after
       type(friction_row_type) :: row
-      type(friction_point_type) :: end
+      type(friction_point_type) :: at_guess
       real(wp) :: force, limit, stiffness, steepness, slipped, by_shear, by_pressure
       integer :: side
 
       slipped = after%slip - before%slip
-      side = way(direction, before, after)
-      end = after
-      end%shear = -side*force_after(self, abs(slipped), -side*before%shear, mean_limit(before, after))
-      call find_stiffness(self, side, before, end, force, limit, stiffness, steepness)
+      side = guessed_direction(direction, before, after)
+      at_guess = after
+      at_guess%shear = -side*force_after(self, abs(slipped), -side*before%shear, mean_limit(before, after))
+      call find_stiffness(self, side, before, at_guess, force, limit, stiffness, steepness)
       by_shear = 0.0_wp
       by_pressure = 0.0_wp
       if (limit > 0.0_wp) then
@@ -221,7 +223,7 @@ contains
       end if
       row%stiffness = -stiffness/(1.0_wp + by_shear)
       row%slope = -by_pressure/(1.0_wp + by_shear)
-      row%offset = end%shear - row%stiffness*end%slip - row%slope*end%pressure
+      row%offset = at_guess%shear - row%stiffness*at_guess%slip - row%slope*at_guess%pressure
    end function creeping_row
 
    !> Mean of mu p at two points, force/length^2.
@@ -240,10 +242,9 @@ contains
       real(wp) :: bounds(2), room, stiffness, steepness, residual, next
       integer :: iteration
 
-      if (.not. limit > 0.0_wp .or. .not. self%exponent > 0.0_wp) then
-         after = force + merge(0.0_wp, self%stiffness*slip, self%exponent > 0.0_wp)
-         return
-      end if
+      ! Without a limit, as where a guess has no pressure, the bristles do not yield; nor without an exponent.
+      after = force + self%stiffness*slip
+      if (.not. limit > 0.0_wp .or. .not. self%exponent > 0.0_wp) return
       bounds = [min(force, 2.0_wp*limit - force), max(force, 2.0_wp*limit - force)]
       after = force
       do iteration = 1, most_iterations
@@ -256,7 +257,7 @@ contains
             bounds(1) = after
          end if
          next = after - residual/(1.0_wp + 0.5_wp*steepness*slip/limit)
-         if (next <= bounds(1) .or. next >= bounds(2)) next = 0.5_wp*(bounds(1) + bounds(2))
+         if (next < bounds(1) .or. next > bounds(2)) next = 0.5_wp*(bounds(1) + bounds(2))
          if (abs(next - after) <= spacing(limit)) exit
          after = next
       end do
@@ -281,13 +282,16 @@ contains
       force = -0.5_wp*(before%shear + after%shear)*direction
       limit = mean_limit(before, after)
       room = 1.0_wp
-      if (abs(force) < farthest*limit) room = 1.0_wp - force/limit
-      if (.not. abs(force) < farthest*limit .and. abs(force) > 0.0_wp) room = merge(1.0_wp - farthest, 2.0_wp, force > 0.0_wp)
+      if (abs(force) < farthest*limit) then
+         room = 1.0_wp - force/limit
+      else if (limit > 0.0_wp) then
+         room = merge(1.0_wp - farthest, 2.0_wp, force > 0.0_wp)
+      end if
       call find_slope(self, room, stiffness, steepness)
    end subroutine find_stiffness
 
    !> K and minus its derivative by f/(mu p), force/length^3, where `room` = 1 - f/(mu p). The law is continued beyond the limit
-   !> with its sign (eq. 3.9), and with the stiffness of the limit beyond that against the motion; converged states are not there.
+   !> with its sign (eq. 3.9); beyond the limit against the motion, room > 2, K is that of room = 2. Converged states are not there.
    elemental subroutine find_slope(self, room, stiffness, steepness)
       class(dahl_law_type), intent(in) :: self
       real(wp), intent(in) :: room

@@ -228,9 +228,9 @@ contains
          if (state%status(i) /= node_open) then
             closed_gap = largest_or_nan(closed_gap, gap)
             undeformed = max(undeformed, abs(model%initial_gap(i)))
-            negative_pressure = max(negative_pressure, -lack(event_open))
+            negative_pressure = max(negative_pressure, -slack_of(event_open))
          else
-            if (model%can_touch(i)) open_gap = max(open_gap, -lack(event_close))
+            if (model%can_touch(i)) open_gap = max(open_gap, -slack_of(event_close))
             open_traction_size = max(open_traction_size, abs(state%fields%pressure(i)) + abs(state%fields%shear(i)))
          end if
       end do
@@ -244,11 +244,11 @@ contains
 
    contains
 
-      pure real(wp) function lack(event)
+      pure real(wp) function slack_of(event)
          integer, intent(in) :: event
 
-         lack = slack(event, gap, state%fields%pressure(i), 0.0_wp, 0.0_wp, 0.0_wp)
-      end function lack
+         slack_of = slack(event, gap, state%fields%pressure(i), 0.0_wp, 0.0_wp, 0.0_wp)
+      end function slack_of
    end subroutine check_normal_contact
 
    !> Equalities and inequalities of slip and shear traction. Over a large increment slip counts from its own reference, which

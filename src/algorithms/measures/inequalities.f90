@@ -1,6 +1,6 @@
 !> The inequalities of dissertation Table 2.1 at a node, each by the event at which it is first violated, and the status that
-!> follows. All algorithms take them from here: the search for the first violation, large increments, the conventional algorithm,
-!> the rates of all nodes at once and the certificate. Friction laws add their own events (mfv_friction_law).
+!> follows. The search for the first violation, large increments, the conventional algorithm, the rates of all nodes at once and
+!> the certificate take them from here; friction laws add their own events (mfv_friction_law).
 !>
 !> The first violation: the inequality that is violated first at the given rates per unit of load, and the step to it. Equations 2.3
 !> to 2.5 with rates in place of a trial state. A slip rate in the wrong direction is a violation after a step of zero.
@@ -109,7 +109,7 @@ contains
       type(contact_fields_type), intent(in) :: state, rate
       real(wp), intent(in) :: rate_tolerance, tolerance
       type(violations_type), intent(inout) :: violations
-      real(wp) :: traction_scale, motion_scale, limit_fraction, full, slip_rate, least_rate, noise(size(status))
+      real(wp) :: traction_scale, motion_scale, limit_fraction, full, slip_rate, least_rate, uncertain(size(status))
       logical :: soft_limit, sticks
       real(wp), parameter :: secant_tolerance = 100.0_wp
       integer :: i, n
@@ -135,7 +135,7 @@ contains
       end if
       call find_scales(rate, traction_scale, motion_scale)
       least_rate = rate_tolerance*traction_scale
-      noise = max(traction_noise(model, status), tolerance)*max(maxval(abs(state%pressure)), maxval(abs(state%shear)))
+      uncertain = max(traction_tolerance(model, status), tolerance)*max(maxval(abs(state%pressure)), maxval(abs(state%shear)))
       do i = 1, n
          limit_fraction = full*model%static_friction(i)
          slip_rate = rate%tangential(i) - rate%motion(motion_shift)
@@ -145,8 +145,8 @@ contains
             cycle
          case (node_stick, node_creep_right, node_creep_left)
             if (.not. (soft_limit .and. .not. state%pressure(i) > 0.0_wp .and. rate%pressure(i) > least_rate)) then
-               call consider_inequality(event_slip_right, max(limit_fraction, 1.0_wp)*traction_scale, noise(i))
-               call consider_inequality(event_slip_left, max(limit_fraction, 1.0_wp)*traction_scale, noise(i))
+               call consider_inequality(event_slip_right, max(limit_fraction, 1.0_wp)*traction_scale, uncertain(i))
+               call consider_inequality(event_slip_left, max(limit_fraction, 1.0_wp)*traction_scale, uncertain(i))
             end if
          case (node_slip_right, node_slip_left)
             if (sticks) then
@@ -159,7 +159,7 @@ contains
             end if
          end select
          if (allocated(events)) call consider_events()
-         call consider_inequality(event_open, traction_scale, noise(i))
+         call consider_inequality(event_open, traction_scale, uncertain(i))
       end do
 
    contains
@@ -168,15 +168,16 @@ contains
       subroutine consider_inequality(event, scale, round_off)
          integer, intent(in) :: event
          real(wp), intent(in) :: scale, round_off
-         real(wp) :: change, lack
+         real(wp) :: slack_rate, present_slack
 
-         change = slack(event, rate%normal(i) - rate%motion(motion_approach), rate%pressure(i), rate%shear(i), &
-                        limit_fraction*rate%pressure(i), slip_sign(status(i))*slip_rate)
-         if (.not. change < 0.0_wp) return
-         lack = slack(event, model%initial_gap(i) - state%motion(motion_approach) + state%normal(i), state%pressure(i), &
-                      state%shear(i), limit_fraction*state%pressure(i), 0.0_wp)
-         if (any(event == [event_slip_right, event_slip_left])) lack = beyond_round_off(lack, limit_fraction*state%pressure(i))
-         call consider(event, lack, change, scale, round_off)
+         slack_rate = slack(event, rate%normal(i) - rate%motion(motion_approach), rate%pressure(i), rate%shear(i), &
+                            limit_fraction*rate%pressure(i), slip_sign(status(i))*slip_rate)
+         if (.not. slack_rate < 0.0_wp) return
+         present_slack = slack(event, model%initial_gap(i) - state%motion(motion_approach) + state%normal(i), state%pressure(i), &
+                               state%shear(i), limit_fraction*state%pressure(i), 0.0_wp)
+         if (any(event == [event_slip_right, event_slip_left])) &
+            present_slack = beyond_round_off(present_slack, limit_fraction*state%pressure(i))
+         call consider(event, present_slack, slack_rate, scale, round_off)
       end subroutine consider_inequality
 
       !> Events of the friction law at node `i`.
@@ -189,52 +190,52 @@ contains
                call consider(event%kind, event%slack, event%rate + event%by_pressure*rate%pressure(i) &
                              + event%by_motion*(motion_sign(status(i))*slip_rate), &
                              event%tolerance_factor*merge(motion_scale, traction_scale, event%is_length), &
-                             merge(0.0_wp, noise(i), event%is_length))
+                             merge(0.0_wp, uncertain(i), event%is_length))
             end associate
          end do
       end subroutine consider_events
 
-      !> Note a violation of node `i` that lacks `lack` >= 0, with its `round_off`, and changes at `change`, if it is earlier than
-      !> those found so far.
-      subroutine consider(kind, lack, change, scale, round_off)
+      !> Note the violation of an inequality of node `i` with this slack, its `round_off` and its rate, if it is earlier than those
+      !> found so far.
+      subroutine consider(kind, present_slack, slack_rate, scale, round_off)
          integer, intent(in) :: kind
-         real(wp), intent(in) :: lack, change, scale, round_off
+         real(wp), intent(in) :: present_slack, slack_rate, scale, round_off
          real(wp) :: step, speed
 
-         if (.not. change < -rate_tolerance*scale) return
-         step = max(lack, 0.0_wp)/(-change)
+         if (.not. slack_rate < -rate_tolerance*scale) return
+         step = max(present_slack, 0.0_wp)/(-slack_rate)
          if (step > violations%step(i)) return
          ! No rate is a scale where every node slides at its limit.
          speed = huge(1.0_wp)
-         if (scale > -change*tiny(1.0_wp)) speed = -change/scale
+         if (scale > -slack_rate*tiny(1.0_wp)) speed = -slack_rate/scale
          if (.not. step < violations%step(i) .and. speed < violations%speed(i)) return
          violations%kind(i) = kind
          violations%step(i) = step
-         violations%soonest(i) = max(lack - round_off, 0.0_wp)/(-change)
+         violations%soonest(i) = max(present_slack - round_off, 0.0_wp)/(-slack_rate)
          violations%speed(i) = speed
       end subroutine consider
    end subroutine find_violations
 
    !> Round-off of the traction of each node in contact, relative to the largest: that of displacements, which are those of the
    !> whole contact, times the stiffness of its interval, but at most that of equal intervals; shape (nodes).
-   pure function traction_noise(model, status) result(noise)
+   pure function traction_tolerance(model, status) result(tolerance)
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: status(:)
-      real(wp) :: noise(size(status))
+      real(wp) :: tolerance(size(status))
       real(wp), parameter :: round_off = 4.0_wp*epsilon(1.0_wp)
       logical :: contact(size(status))
 
       contact = in_contact(status)
-      noise = round_off*min(sum(model%width, mask=contact)/model%width, real(count(contact), wp))
-   end function traction_noise
+      tolerance = round_off*min(sum(model%width, mask=contact)/model%width, real(count(contact), wp))
+   end function traction_tolerance
 
    !> What a traction lacks to a limit; none within its round-off, where a node that approaches its limit slowly (Dahl's law) would
    !> stay for ever.
-   pure real(wp) function beyond_round_off(lack, limit)
-      real(wp), intent(in) :: lack, limit
+   pure real(wp) function beyond_round_off(present_slack, limit)
+      real(wp), intent(in) :: present_slack, limit
       real(wp), parameter :: round_off = 8.0_wp*epsilon(1.0_wp)
 
-      beyond_round_off = merge(0.0_wp, lack, lack <= round_off*limit)
+      beyond_round_off = merge(0.0_wp, present_slack, present_slack <= round_off*limit)
    end function beyond_round_off
 
    !> The largest rates of tractions and of motions.

@@ -24,7 +24,7 @@ module mfv_zone_edges
    implicit none
    private
    public :: zone_type, patch_type, zone_edges_type, find_patches, find_zone_edges, outermost_edges, largest_shear, &
-             zones_of, ends_with_body, is_beyond_corner, rises_at_end, slipping_run
+             zones_of, held, ends_with_body, is_beyond_corner, rises_at_end, slipping_run
 
    !> A zone of neighbouring nodes, from `first` to `last`, and its edges: arc lengths from the origin of x, positive to the
    !> right; and the uncertainty of these edges, lengths.
@@ -203,11 +203,11 @@ contains
    end subroutine find_stick_zones
 
    !> Nodes that stick, and those that may slip but have not yet: when a cycle repeats its tractions, many nodes reach their
-   !> limit together and rounding errors decide which are called slipping. Where no node is called sticking, more must rest than the
-   !> last ones before sliding.
+   !> limit together and rounding errors decide which are called slipping. If no node is called sticking, the last few at rest
+   !> before all slide do not count.
    pure function held(state)
       type(contact_state_type), intent(in) :: state
-      integer, parameter :: last_ones = 4
+      integer, parameter :: last_before_sliding = 4
       logical :: held(size(state%status))
       real(wp) :: scale
 
@@ -216,7 +216,7 @@ contains
          held = holds(state%status) .or. (slips(state%status) .and. &
                                           abs(tangential - shift - state%stuck_slip) <= certified*scale)
       end associate
-      if (.not. any(holds(state%status)) .and. count(held) <= last_ones) held = .false.
+      if (.not. any(holds(state%status)) .and. count(held) <= last_before_sliding) held = .false.
    end function held
 
    !> Largest size of the shear traction in a patch, force/length^2: at its nodes, and at the edges of stick zones between nodes,

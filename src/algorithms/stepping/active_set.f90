@@ -406,6 +406,8 @@ contains
                     slack(inequalities, gap(i), fields%pressure(i), fields%shear(i), &
                           path%model%static_friction(i)*fields%pressure(i), slip_sign(wanted(i))*slipped(i)) < -allowed
          if (.not. path%model%can_touch(i)) violated = violated .and. inequalities /= event_close
+         ! With a pressure below zero by round-off a shear traction is beyond both limits: the node slips the way of its own.
+         violated = violated .and. inequalities /= merge(event_slip_right, event_slip_left, fields%shear(i) > 0.0_wp)
          if (any(violated)) wanted(i) = status_after(inequalities(findloc(violated, .true., dim=1)), wanted(i), &
                                                      closed == node_stick, 0, node_stick)
       end do

@@ -221,27 +221,27 @@ contains
          gap = path%model%gap(trial)
          limit = path%model%static_friction*trial%pressure
          slipped = trial%slip() - path%state%fields%slip()
-         repair = worst(event_close, lack(event_close), path%model%can_touch .and. is_required(event_close, status), motion)
-         if (repair%kind == event_none) repair = worst(event_open, lack(event_open), is_required(event_open, status), traction)
+         repair = worst(event_close, slack_of(event_close), path%model%can_touch .and. is_required(event_close, status), motion)
+         if (repair%kind == event_none) repair = worst(event_open, slack_of(event_open), is_required(event_open, status), traction)
          if (repair%kind /= event_none) return
-         repair = worst(event_slip_right, min(lack(event_slip_right), lack(event_slip_left)), &
+         repair = worst(event_slip_right, min(slack_of(event_slip_right), slack_of(event_slip_left)), &
                         is_required(event_slip_right, status), traction)
          if (repair%kind /= event_none) then
             if (trial%shear(repair%node) > 0.0_wp) repair%kind = event_slip_left
             return
          end if
          if (path%model%tangential .and. any(slips(status))) call mend_bristles(path, trial, slipped, repair, traction)
-         if (repair%kind == event_none) repair = worst(event_stick, lack(event_stick), slips(status) .or. creeps(status), motion)
+        if (repair%kind == event_none) repair = worst(event_stick, slack_of(event_stick), slips(status) .or. creeps(status), motion)
       end associate
 
    contains
 
-      function lack(event)
+      function slack_of(event)
          integer, intent(in) :: event
-         real(wp) :: lack(size(gap))
+         real(wp) :: slack_of(size(gap))
 
-         lack = slack(event, gap, trial%pressure, trial%shear, limit, motion_sign(path%state%status)*slipped)
-      end function lack
+         slack_of = slack(event, gap, trial%pressure, trial%shear, limit, motion_sign(path%state%status)*slipped)
+      end function slack_of
    end function worst_violation
 
    !> Repair of slipping nodes whose bristles take up the load again, for laws with creep. Their `slipped` is then set to zero.
@@ -262,16 +262,16 @@ contains
       end associate
    end subroutine mend_bristles
 
-   !> The node of `mask` that lacks least, if that is negative beyond `allowed`.
-   pure type(repair_type) function worst(kind, lack, mask, allowed)
+   !> The node of `mask` with the least slack, if that is negative beyond `allowed`.
+   pure type(repair_type) function worst(kind, slacks, mask, allowed)
       integer, intent(in) :: kind
-      real(wp), intent(in) :: lack(:), allowed
+      real(wp), intent(in) :: slacks(:), allowed
       logical, intent(in) :: mask(:)
 
       if (.not. any(mask)) return
-      if (.not. minval(lack, mask=mask) < -allowed) return
+      if (.not. minval(slacks, mask=mask) < -allowed) return
       worst%kind = kind
-      worst%node = minloc(lack, mask=mask, dim=1)
+      worst%node = minloc(slacks, mask=mask, dim=1)
    end function worst
 
    !> Make a repair.
