@@ -233,7 +233,7 @@ contains
       mean_limit = 0.5_wp*before%static*(before%pressure + after%pressure)
    end function mean_limit
 
-   !> The bristle load f1 after a slip s > 0 in the direction of f, from f0 by the implicit midpoint rule, force/length^2:
+   !> The bristle load f1 after a slip s >= 0 in the direction of f, from f0 by the implicit midpoint rule, force/length^2:
    !> f1 - f0 - sigma (1 - (f0 + f1)/(2 limit))^gamma s = 0, which increases with f1. By Newton's method within bounds.
    elemental real(wp) function force_after(self, slip, force, limit) result(after)
       class(dahl_law_type), intent(in) :: self
@@ -242,8 +242,9 @@ contains
       real(wp) :: bounds(2), room, stiffness, steepness, residual, next
       integer :: iteration
 
-      ! Without a limit, as where a guess has no pressure, the bristles do not yield; nor without an exponent.
-      after = force + self%stiffness*slip
+      ! A guess without pressure says nothing about the load there: it stays.
+      after = force
+      if (.not. self%exponent > 0.0_wp) after = force + self%stiffness*slip
       if (.not. limit > 0.0_wp .or. .not. self%exponent > 0.0_wp) return
       bounds = [min(force, 2.0_wp*limit - force), max(force, 2.0_wp*limit - force)]
       after = force
