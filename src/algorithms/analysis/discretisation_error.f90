@@ -21,7 +21,7 @@ module mfv_discretisation_error
    use mfv_scene, only: scene_type
    use mfv_simulation, only: history_none, mark_loading, mark_return, mark_reversal, new_simulation, simulation_type, &
                              states_steps
-   use mfv_slip_zones, only: contact_interval, largest_resolved_error, slip_record_type
+   use mfv_slip_zones, only: contact_interval, is_narrow_stick_zone, largest_resolved_error, slip_record_type
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_strings, only: to_text
    use mfv_tolerances, only: certified, significant
@@ -711,11 +711,12 @@ contains
       type(contact_state_type), intent(in) :: state
       logical, intent(in) :: has_receded
       type(patch_type), intent(inout) :: patches(:)
-      !> In intervals; grown_to_end where fewer than two nodes slip beside the stick zone; worn where the outermost node is, since
-      !> the pressure vanishes otherwise there; cornered over the number of nodes of the patch: around a corner in contact the
-      !> pressure has an error of the first order, which moves the edges in second order.
+      !> In intervals; narrow of stick zones of few nodes between opposite slip; grown_to_end where fewer than two nodes slip beside
+      !> the stick zone; worn where the outermost node is, since the pressure vanishes otherwise there; cornered over the number of
+      !> nodes of the patch: around a corner in contact the pressure has an error of the first order, which moves the edges in
+      !> second order.
       real(wp), parameter :: coupled = 0.02_wp, receded = 0.5_wp, worn = 0.5_wp, grown = 0.2_wp, grown_to_end = 0.25_wp, &
-                             cornered = 0.2_wp
+                             cornered = 0.2_wp, narrow = 0.5_wp
       integer, parameter :: fewest_alike = 4
       logical :: can_grow, depends_on_friction
       type(corner_type), allocatable :: corners(:)
@@ -739,9 +740,13 @@ contains
                                                               max(least, merge(worn, 0.0_wp, is_worn(patch%first))))
             if (.not. patch%right_ends) patch%right_error = max(patch%right_error, width(patch%last)* &
                                                                 max(least, merge(worn, 0.0_wp, is_worn(patch%last))))
-            if (.not. can_grow) cycle
             do j = 1, size(patch%stick)
                associate (zone => patch%stick(j))
+                  if (is_narrow_stick_zone(state%status, zone)) then
+                     zone%left_error = max(zone%left_error, width(zone%first)*narrow)
+                     zone%right_error = max(zone%right_error, width(zone%last)*narrow)
+                  end if
+                  if (.not. can_grow) cycle
                   zone%left_error = max(zone%left_error, width(zone%first)*merge(grown_to_end, grown, &
                                                                                  zone%first - patch%first < 2))
                   zone%right_error = max(zone%right_error, width(zone%last)*merge(grown_to_end, grown, patch%last - zone%last < 2))

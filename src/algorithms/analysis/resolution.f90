@@ -13,7 +13,8 @@ module mfv_resolution
    use mfv_observables, only: observable_count, observables
    use mfv_profile_sampling, only: find_missed, negligible_pressure, pressure_of_wave
    use mfv_simulation, only: simulation_type
-   use mfv_slip_zones, only: contact_interval, hidden_width_at_edge, needed_mesh, nodes_at_edge, resolved_nodes, slip_record_type
+   use mfv_slip_zones, only: contact_interval, hidden_width_at_edge, is_narrow_stick_zone, needed_mesh, nodes_at_edge, &
+                             resolved_nodes, slip_record_type
    use mfv_strings, only: has_word, to_text
    use mfv_zone_edges, only: find_patches, find_zone_edges, is_beyond_corner, patch_type, rises_at_end, zone_edges_type, &
                              zone_type, zones_of
@@ -520,7 +521,7 @@ contains
          n = model%nodes()
          hidden = slip_sign(status(:n - 1))*slip_sign(status(2:)) < 0
          zones = zones_of(holds(status))
-         narrow = [(is_narrow(zones(i)), i=1, size(zones))]
+         narrow = [(is_narrow_stick_zone(status, zones(i)), i=1, size(zones))]
          i = findloc(hidden, .true., dim=1)
          if (i > 0) call add_unresolved(unresolved, 'stick_zones'//peaks_near([(zone_type(i, i + 1), i=1, n - 1)], hidden), &
                                         'near x = '//to_text(model%x(i), 4)//' a stick zone has no node', 'use more nodes')
@@ -534,17 +535,6 @@ contains
       end associate
 
    contains
-
-      !> Whether a stick zone between opposite slip has few nodes.
-      pure logical function is_narrow(zone)
-         type(zone_type), intent(in) :: zone
-
-         is_narrow = .false.
-         associate (status => simulation%contact%state%status)
-            if (zone%first == 1 .or. zone%last == size(status) .or. zone%last - zone%first + 1 >= resolved_nodes) return
-            is_narrow = slip_sign(status(zone%first - 1))*slip_sign(status(zone%last + 1)) < 0
-         end associate
-      end function is_narrow
 
       !> Names of the peaks, after blanks, if the pressure is largest in or next to one of the `chosen` zones: with full coupling
       !> the jump of the shear gives the pressure a logarithm there.

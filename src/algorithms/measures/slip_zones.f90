@@ -13,7 +13,7 @@ module mfv_slip_zones
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: pi, wp
    use mfv_motions, only: motion_count, motion_approach, motion_shift
-   use mfv_node_status, only: holds, in_contact, motion_sign, node_frictionless
+   use mfv_node_status, only: holds, in_contact, motion_sign, node_frictionless, slip_sign
    use mfv_reference_spence, only: spence_stick_ratio
    use mfv_strings, only: to_text
    use mfv_tolerances, only: significant
@@ -21,7 +21,7 @@ module mfv_slip_zones
    implicit none
    private
    public :: slip_record_type, segment_start_type, widest_slip_zone, nodes_at_edge, hidden_width_at_edge, &
-             resolved_nodes, needed_mesh, contact_interval, largest_resolved_error
+             resolved_nodes, needed_mesh, contact_interval, is_narrow_stick_zone, largest_resolved_error
 
    !> Nodes of a resolved slip zone.
    integer, parameter :: resolved_nodes = 4
@@ -432,6 +432,16 @@ contains
       is_coarse_now = self%nodes_now < resolved_nodes .and. &
                       (self%nodes_now > 0 .or. self%width_now > visible*interval)
    end function is_coarse_now
+
+   !> Whether a stick zone has few nodes between opposite slip: the shear traction changes its sign in it.
+   pure logical function is_narrow_stick_zone(status, zone)
+      integer, intent(in) :: status(:)
+      class(zone_type), intent(in) :: zone
+
+      is_narrow_stick_zone = .false.
+      if (zone%first == 1 .or. zone%last == size(status) .or. zone%last - zone%first + 1 >= resolved_nodes) return
+      is_narrow_stick_zone = slip_sign(status(zone%first - 1))*slip_sign(status(zone%last + 1)) < 0
+   end function is_narrow_stick_zone
 
    !> Mean width of the intervals in contact, length; of all intervals without contact.
    pure real(wp) function contact_interval(model, state)
