@@ -877,10 +877,10 @@ def test_sensitivity_to_round_off_in_the_process_and_in_the_file(tmp_path: Path)
 
 
 def test_bristles_that_are_too_stiff_are_named() -> None:
-    text = SHEARED.replace(FRICTION, "&friction law='dahl', mu=0.7, stiffness=1e8 /\n").replace(", friction=.false.", "")
+    text = SHEARED.replace(FRICTION, "&friction law='dahl', mu=0.7, stiffness=1e12 /\n").replace(", friction=.false.", "")
     result = mfv.run(text=text.replace("goodman", "full"))
     assert result.outcome == "no admissible continuation"
-    assert "the bristles are too stiff for this mesh: &friction stiffness=1e8 should be at most" in result.message
+    assert "the bristles are too stiff for this mesh: &friction stiffness=1e12 should be at most" in result.message
     assert "law='coulomb' is the limit" in result.message
 
 
