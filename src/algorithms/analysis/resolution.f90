@@ -512,41 +512,36 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
       type(zone_type), allocatable :: zones(:)
-      logical, allocatable :: hidden(:), narrow(:)
       character(:), allocatable :: names
-      integer :: i, n
+      integer :: i, n, nodes
 
       associate (model => simulation%contact%model, status => simulation%contact%state%status)
          if (.not. model%tangential .or. .not. allocated(model%scene%friction%law)) return
          n = model%nodes()
-         hidden = slip_sign(status(:n - 1))*slip_sign(status(2:)) < 0
+         zones = pack([(zone_type(i, i + 1), i=1, n - 1)], slip_sign(status(:n - 1))*slip_sign(status(2:)) < 0)
+         if (size(zones) > 0) call add_unresolved(unresolved, 'stick_zones'//peaks_near(zones), 'near x = '// &
+                                                 to_text(model%x(zones(1)%first), 4)//' a stick zone has no node', 'use more nodes')
          zones = zones_of(holds(status))
-         narrow = [(is_narrow_stick_zone(status, zones(i)), i=1, size(zones))]
-         i = findloc(hidden, .true., dim=1)
-         if (i > 0) call add_unresolved(unresolved, 'stick_zones'//peaks_near([(zone_type(i, i + 1), i=1, n - 1)], hidden), &
-                                        'near x = '//to_text(model%x(i), 4)//' a stick zone has no node', 'use more nodes')
-         names = adjustl(trim(largest_tensions(simulation))//peaks_near(zones, narrow))
-         i = findloc(narrow, .true., dim=1)
-         if (i == 0 .or. names == '') return
-         associate (first => zones(i)%first, nodes => zones(i)%last - zones(i)%first + 1)
-          call add_unresolved(unresolved, names, 'near x = '//to_text(model%x(first), 4)//' a stick zone between opposite slip '// &
-                                'has only '//to_text(nodes)//trim(merge(' node ', ' nodes', nodes == 1)), 'use more nodes')
-         end associate
+         zones = pack(zones, [(is_narrow_stick_zone(status, zones(i)), i=1, size(zones))])
+         names = adjustl(trim(largest_tensions(simulation))//peaks_near(zones))
+         if (size(zones) == 0 .or. names == '') return
+         nodes = zones(1)%last - zones(1)%first + 1
+         call add_unresolved(unresolved, names, 'near x = '//to_text(model%x(zones(1)%first), 4)//' a stick zone between '// &
+                           'opposite slip has only '//to_text(nodes)//trim(merge(' node ', ' nodes', nodes == 1)), 'use more nodes')
       end associate
 
    contains
 
-      !> Names of the peaks, after blanks, if the pressure is largest in or next to one of the `chosen` zones: with full coupling
-      !> the jump of the shear gives the pressure a logarithm there.
-      function peaks_near(zones, chosen) result(names)
+      !> Names of the peaks, after blanks, if the pressure is largest in or next to one of the zones: with full coupling the jump of
+      !> the shear gives the pressure a logarithm there.
+      function peaks_near(zones) result(names)
          type(zone_type), intent(in) :: zones(:)
-         logical, intent(in) :: chosen(:)
          character(len=25) :: names
 
          names = ''
          if (.not. simulation%contact%model%compliance%elastic_block(block_wt)) return
          associate (peak => maxloc(simulation%contact%state%fields%pressure, dim=1))
-            if (any(chosen .and. zones%first <= peak + 1 .and. zones%last >= peak - 1)) names = ' peak_pressure peak_shear'
+            if (any(zones%first <= peak + 1 .and. zones%last >= peak - 1)) names = ' peak_pressure peak_shear'
          end associate
       end function peaks_near
    end subroutine check_stick_zones

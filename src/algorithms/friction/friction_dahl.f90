@@ -242,12 +242,14 @@ contains
       real(wp) :: bounds(2), room, stiffness, steepness, residual, next
       integer :: iteration
 
+      after = force
+      if (.not. self%exponent > 0.0_wp) then
+         after = force + self%stiffness*slip
+         return
+      end if
       ! A guess without pressure says nothing about the load there: it stays.
-      after = force
-      if (.not. self%exponent > 0.0_wp) after = force + self%stiffness*slip
-      if (.not. limit > 0.0_wp .or. .not. self%exponent > 0.0_wp) return
+      if (.not. limit > 0.0_wp) return
       bounds = [min(force, 2.0_wp*limit - force), max(force, 2.0_wp*limit - force)]
-      after = force
       do iteration = 1, most_iterations
          room = 1.0_wp - 0.5_wp*(force + after)/limit
          call find_slope(self, room, stiffness, steepness)

@@ -9,9 +9,9 @@ module mfv_contact_path
    use mfv_contact_system
    use mfv_derivatives, only: derivatives_type, parameter_type
    use mfv_error, only: error_type, set_error
-   use mfv_inequalities, only: status_after
    use mfv_friction_law, only: friction_event_type, friction_point_type, most_events
    use mfv_history, only: history_type
+   use mfv_inequalities, only: status_after
    use mfv_kinds, only: wp
    use mfv_linear_solvers, only: choose_stepping, new_contact_system
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_wear, control_force, &

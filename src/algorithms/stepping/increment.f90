@@ -14,8 +14,8 @@ module mfv_increment
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path, only: contact_path_type
    use mfv_contact_system
-   use mfv_inequalities, only: find_violations, violations_type
    use mfv_friction_law, only: friction_event_type
+   use mfv_inequalities, only: find_violations, violations_type
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_shift
    use mfv_node_status

@@ -62,7 +62,7 @@ contains
       integer, allocatable :: rows(:)
       real(wp), allocatable :: alone(:, :)
       type(error_type), allocatable :: fault
-      logical :: with_gaps
+      logical :: with_gaps, plain
       integer :: found
 
       with_gaps = .false.
@@ -71,8 +71,12 @@ contains
       if (allocated(error)) return
       text%names = names
       found = columns
-      call text%parse(1, found, with_gaps, table, rows, error)
-      if (.not. are_all_lines(text, rows, error)) then
+      plain = starts_with_row(text, columns)
+      if (plain) then
+         call text%parse(1, columns, with_gaps, table, rows, error)
+         plain = .not. allocated(error)
+      end if
+      if (.not. plain) then
          call recognise(text, columns, with_gaps, found)
          if (found < columns) text%names = 'a height, or two, '//names
          call text%parse(1, found, with_gaps, table, rows, error)
@@ -91,17 +95,21 @@ contains
       deallocate (error)
    end subroutine read_table
 
-   !> Whether the lines `rows` that were parsed are all but comments, so that nothing else can be meant. `error`: from parsing.
-   logical function are_all_lines(text, rows, error)
+   !> Whether the first line that is no comment is a row of `columns` numbers. If all others are too, nothing else can be meant.
+   logical function starts_with_row(text, columns)
       type(text_type), intent(in) :: text
-      integer, intent(in) :: rows(:)
-      type(error_type), allocatable, intent(in) :: error
-      integer :: i
+      integer, intent(in) :: columns
+      real(wp) :: values(columns)
+      integer :: i, bad
 
-      are_all_lines = .false.
-      if (allocated(error) .or. size(rows) == 0) return
-      are_all_lines = all([(is_comment(text%line(i)), i=1, rows(1) - 1)])
-   end function are_all_lines
+      starts_with_row = .false.
+      do i = 1, size(text%first)
+         if (is_comment(text%line(i))) cycle
+         call read_row(text%line(i), text%decimal_comma, values, bad)
+         starts_with_row = bad == 0
+         return
+      end do
+   end function starts_with_row
 
    !> Columns of numbers from a text file under a line with their names, which may be a comment. `table`: shape (columns, rows).
    !> Error MFV_INPUT_ERROR with line, column and what would be right.
