@@ -559,7 +559,7 @@ def _surface_points(result: Result, body: str, step: int | None) -> np.ndarray:
 
 def _stressed_body(result: Result) -> str:
     """The body whose stresses a picture shows: the lower one if it is elastic and no matrix."""
-    return "upper" if "lower_shear_modulus" not in result.scene else "lower"
+    return "upper" if "lower_datum" not in result.scene else "lower"
 
 
 def _has_bulk_stress(result: Result) -> bool:

@@ -130,12 +130,21 @@ class Elastic(TypedDict, total=False):
     rigid: bool | None
     yield_strength: float | None
     datum: float | None
+    elasticity: Literal["own", "half_plane", "orthotropic", "anisotropic"] | None
+    youngs_modulus_1: float | None
+    youngs_modulus_2: float | None
+    youngs_modulus_3: float | None
+    poisson_ratio_12: float | None
+    poisson_ratio_13: float | None
+    poisson_ratio_23: float | None
+    shear_modulus_12: float | None
+    compliances: Positions | None
+    axis_angle: float | None
 
 
 class Round(Elastic, total=False):
     """Those of a disk or a hole."""
 
-    elasticity: Literal["own", "half_plane"] | None
     kernel: Literal["exact", "fourier"] | None
     harmonics: int | None
 
@@ -173,7 +182,16 @@ class Body(KeyGroup):
     angle: float | None = None
     coefficient: float | None = None
     exponent: float | None = None
-    elasticity: Literal["own", "half_plane"] | None = None
+    elasticity: Literal["own", "half_plane", "orthotropic", "anisotropic"] | None = None
+    youngs_modulus_1: float | None = None
+    youngs_modulus_2: float | None = None
+    youngs_modulus_3: float | None = None
+    poisson_ratio_12: float | None = None
+    poisson_ratio_13: float | None = None
+    poisson_ratio_23: float | None = None
+    shear_modulus_12: float | None = None
+    compliances: Positions | None = None
+    axis_angle: float | None = None
     kernel: Literal["exact", "fourier"] | None = None
     harmonics: int | None = None
     file: str | os.PathLike[str] | None = None
@@ -188,7 +206,8 @@ class Body(KeyGroup):
 
     @classmethod
     def half_plane(cls, **elastic: Unpack[Elastic]) -> Body:
-        """A half-plane. Elastic: `shear_modulus` or `youngs_modulus` [force/length^2], and `poisson_ratio`."""
+        """A half-plane. Elastic: `shear_modulus` or `youngs_modulus` [force/length^2], and `poisson_ratio`; or `elasticity`
+        'orthotropic' or 'anisotropic' with the keys of such a material (docs/namelist.md)."""
         return cls(shape="half_plane", **elastic)
 
     @classmethod

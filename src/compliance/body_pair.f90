@@ -42,12 +42,13 @@ contains
    subroutine new_body_pair(lower, upper, self)
       class(compliance_type), allocatable, intent(inout) :: lower, upper
       type(body_pair_type), intent(out) :: self
-      real(wp) :: flexibility
+      real(wp) :: flexibility, by_shear
       integer :: i
 
       call move_alloc(lower, self%body(lower_body)%compliance)
       call move_alloc(upper, self%body(upper_body)%compliance)
       flexibility = 0.0_wp
+      by_shear = 0.0_wp
       self%is_homogeneous = .true.
       do i = 1, 2
          if (.not. self%deforms(i)) cycle
@@ -58,10 +59,12 @@ contains
             self%elastic_block = self%elastic_block .or. body%elastic_block
             self%block_values = self%block_values + body%block_values
             flexibility = flexibility + 1.0_wp/body%modulus
+            by_shear = by_shear + body%shear_ratio/body%modulus
             self%is_homogeneous = self%is_homogeneous .and. body%is_homogeneous
          end associate
       end do
       self%modulus = 1.0_wp/flexibility
+      self%shear_ratio = by_shear/flexibility
       if (couples(self)) return
       self%has_block([block_wt, block_up]) = .false.
       self%elastic_block([block_wt, block_up]) = .false.

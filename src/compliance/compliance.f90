@@ -31,9 +31,11 @@ module mfv_compliance
       real(wp) :: modulus = 1.0_wp
       !> Which blocks exist; and which would with vertical normals: only these contain elastic coupling.
       logical :: has_block(4) = .false., elastic_block(4) = .false.
-      !> Whether it is the same everywhere along the surface and in both directions: blocks depend on the distance only, and C_ut is
-      !> C_wp. Half-planes in equal intervals.
+      !> Whether it is the same everywhere along the surface: blocks depend on the distance only, and C_ut is C_wp times
+      !> `shear_ratio`, up to a constant. Half-planes in equal intervals.
       logical :: is_homogeneous = .false.
+      !> C_ut over C_wp next to a load.
+      real(wp) :: shear_ratio = 1.0_wp
       !> Reals stored for the blocks that exist.
       integer :: block_values = 0
    contains

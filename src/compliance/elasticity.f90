@@ -11,13 +11,13 @@ module mfv_elasticity
    implicit none
    private
    public :: elasticity_type, as_half_plane, as_disk, as_hole, as_matrix
-   public :: elasticity_own, elasticity_half_plane, elasticity_names
+   public :: elasticity_own, elasticity_half_plane, elasticity_orthotropic, elasticity_anisotropic, elasticity_names
 
    !> A half-plane; a disk or a hole of the radius of the surface; a user's matrix.
    integer, parameter :: as_half_plane = 1, as_disk = 2, as_hole = 3, as_matrix = 4
-   !> Choices for a body: that of its shape, or a half-plane.
-   integer, parameter :: elasticity_own = 1, elasticity_half_plane = 2
-   character(*), parameter :: elasticity_names = 'own half_plane'
+   !> Choices for a body: that of its shape, or a half-plane, isotropic or not.
+   integer, parameter :: elasticity_own = 1, elasticity_half_plane = 2, elasticity_orthotropic = 3, elasticity_anisotropic = 4
+   character(*), parameter :: elasticity_names = 'own half_plane orthotropic anisotropic'
 
    type :: elasticity_type
       !> One of as_...
@@ -62,12 +62,12 @@ contains
       constants = near_field_of(self%material)
    end function near_field
 
-   !> Strain along the surface per uniform stress in its direction, length^2/force: 1/E in plane stress, (1 - nu^2)/E in plane
-   !> strain.
+   !> Strain along the surface per uniform stress in its direction, length^2/force: s11 of mfv_material; isotropic: 1/E in plane
+   !> stress, (1 - nu^2)/E in plane strain.
    elemental real(wp) function strain_by_bulk_stress(self) result(strain)
       class(elasticity_type), intent(in) :: self
 
-      strain = 0.5_wp/self%material%plane_modulus()
+      strain = self%material%compliance(1)
    end function strain_by_bulk_stress
 
    !> Compliance with `nodes` intervals of the width `interval` (length) of a surface of the radius `radius` (circles).

@@ -1,14 +1,13 @@
 !> Compliance of an elastic half-plane under box tractions (dissertation appendix A, signs and factors as derived in
 !> docs/theory.md; Johnson 1985, section 2.5; Barber 2009, chapter 12).
 !>
-!> With h half the width of an interval, x the distance from its centre and the constants A, At, B of mfv_near_field, of which no
-!> more is assumed, a unit pressure gives
+!> With h half the width of an interval, x the distance from its centre, the constants A, At, M and B of mfv_near_field, of which no
+!> more is assumed, and L = (h/pi) [2 ln(D/h) + 2 - log_kernel(x/h)], a unit pressure gives
 !>
-!>     w = (A/pi) h [ 2 ln(D/h) + 2 - log_kernel(x/h) ],    u = -B h step_kernel(x/h)
+!>     w = A L,    u = M L - B h step_kernel(x/h)
 !>
-!> and a unit shear the same with w and u exchanged, At for A and the sign of the second one changed. A half-plane has no rigid-body
-!> constraint: displacements are measured from the surface point at the distance D (`datum`), where a concentrated normal
-!> force causes w = 0.
+!> and a unit shear u = At L and w = M L + B h step_kernel(x/h). A half-plane has no rigid-body constraint: displacements are measured
+!> from the surface points at the distance D (`datum`), where L of a concentrated force vanishes.
 !>
 !> Equation A.10 in print has -A/(2 pi) with A = 2(1-nu^2)/E in front of *squared* logarithms, too large by a factor of two;
 !> the signs of the coupling terms in A.1/A.2 and A.11/A.13 contradict each other. The signs here satisfy reciprocity,
@@ -27,9 +26,9 @@ module mfv_half_plane
    type, extends(kernel_compliance_type) :: half_plane_type
       private
       real(wp) :: datum = 1.0_wp
-      !> C_wp by distance, C_ut over it, and C_wt = -C_up by distance (odd).
+      !> C_wp by distance; C_wt and C_up are it times M/A, plus and minus the `cross` entries by distance (odd).
       real(wp), allocatable :: direct(:)
-      real(wp) :: shear_ratio = 1.0_wp, cross = 0.0_wp
+      real(wp) :: mixed_ratio = 0.0_wp, cross = 0.0_wp
       !> Products with the first.
       type(toeplitz_type) :: operator
    contains
@@ -59,11 +58,12 @@ contains
       self%interval = interval
       self%datum = datum
       self%modulus = constants%modulus()
-      self%shear_ratio = constants%tangential/constants%normal
+      self%shear_ratio = constants%shear_ratio()
+      self%mixed_ratio = constants%mixed/constants%normal
       call self%choose_blocks(coupling, tangential)
       self%cross = 0.5_wp*constants%coupling*interval
       self%nodes = nodes
-      self%is_homogeneous = .not. (present(ends) .or. abs(self%shear_ratio - 1.0_wp) > 0.0_wp)
+      self%is_homogeneous = .not. present(ends)
       if (present(ends)) then
          call self%grade(ends, odd=[.false., .true.])
       else
@@ -110,6 +110,7 @@ contains
 
       signature = 0.0_wp
       if (abs(self%cross) > 0.0_wp) signature(:2) = [1.0_wp, self%cross]
+      if (abs(self%mixed_ratio) > 0.0_wp) signature(3:) = [self%mixed_ratio/self%modulus, self%datum]
    end function signature
 
    !> See mfv_compliance.
@@ -117,25 +118,22 @@ contains
       class(half_plane_type), intent(in) :: self
       integer, intent(in) :: block, rows(:), columns(:)
       real(wp), intent(out) :: matrix(:, :)
+      !> Part of the first and of the second kernel in each block.
+      real(wp) :: direct(4), step(4)
       integer :: j
 
-      if (allocated(self%mean)) then
-         matrix = self%mean(rows, columns, merge(direct_kernel, cross_kernel, block == block_wp .or. block == block_ut))
-         if (block == block_up) matrix = -matrix
-         if (block == block_ut) matrix = self%shear_ratio*matrix
-         return
-      end if
+      direct([block_wp, block_wt, block_up, block_ut]) = [1.0_wp, self%mixed_ratio, self%mixed_ratio, self%shear_ratio]
+      step([block_wp, block_wt, block_up, block_ut]) = [0.0_wp, 1.0_wp, -1.0_wp, 0.0_wp]
+      matrix = 0.0_wp
       do j = 1, size(columns)
-         select case (block)
-         case (block_wp)
-            matrix(:, j) = self%direct(abs(rows - columns(j)) + 1)
-         case (block_ut)
-            matrix(:, j) = self%shear_ratio*self%direct(abs(rows - columns(j)) + 1)
-         case (block_wt)
-            matrix(:, j) = self%cross*step_kernel(2.0_wp*(rows - columns(j)))
-         case (block_up)
-            matrix(:, j) = -self%cross*step_kernel(2.0_wp*(rows - columns(j)))
-         end select
+         if (allocated(self%mean)) then
+            if (abs(direct(block)) > 0.0_wp) matrix(:, j) = direct(block)*self%mean(rows, columns(j), direct_kernel)
+            if (abs(step(block)) > 0.0_wp) matrix(:, j) = matrix(:, j) + step(block)*self%mean(rows, columns(j), cross_kernel)
+         else
+            if (abs(direct(block)) > 0.0_wp) matrix(:, j) = direct(block)*self%direct(abs(rows - columns(j)) + 1)
+            if (abs(step(block)) > 0.0_wp) &
+               matrix(:, j) = matrix(:, j) + step(block)*self%cross*step_kernel(2.0_wp*(rows - columns(j)))
+         end if
       end do
    end subroutine entries
 
@@ -149,6 +147,10 @@ contains
       call self%operator%multiply(pressure, by_block(:, block_wp), shear, by_block(:, block_ut))
       if (self%has_block(block_wt)) call multiply_steps(self%cross, shear, by_block(:, block_wt))
       if (self%has_block(block_up)) call multiply_steps(-self%cross, pressure, by_block(:, block_up))
+      if (abs(self%mixed_ratio) > 0.0_wp) then
+         if (self%has_block(block_wt)) by_block(:, block_wt) = by_block(:, block_wt) + self%mixed_ratio*by_block(:, block_ut)
+         if (self%has_block(block_up)) by_block(:, block_up) = by_block(:, block_up) + self%mixed_ratio*by_block(:, block_wp)
+      end if
       by_block(:, block_ut) = merge(self%shear_ratio, 0.0_wp, self%has_block(block_ut))*by_block(:, block_ut)
    end subroutine products
 
@@ -157,9 +159,14 @@ contains
       class(half_plane_type), intent(in) :: self
       real(wp), intent(in) :: shear(:)
       real(wp), intent(out) :: normal(:)
+      real(wp) :: direct(size(shear)), none(size(shear))
 
       normal = 0.0_wp
-      if (self%has_block(block_wt)) call multiply_steps(self%cross, shear, normal)
+      if (.not. self%has_block(block_wt)) return
+      call multiply_steps(self%cross, shear, normal)
+      if (.not. abs(self%mixed_ratio) > 0.0_wp) return
+      call self%operator%multiply(shear, direct, 0.0_wp*shear, none)
+      normal = normal + self%mixed_ratio*direct
    end subroutine normal_by_shear
 
    !> displacement(i) = cross (sum of tractions left of i - sum right of i).

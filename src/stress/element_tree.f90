@@ -220,16 +220,17 @@ contains
       leaves = count(self%halves == 0)
    end function leaves
 
-   !> Integrals over the distant elements of sigma/(s - z) ds, of its derivative sigma/(s - z)^2 ds, and of aimag(sigma)/(s - z) ds.
-   !> The others are in the first `number` ranges of elements `near`, shape (2, leaves).
+   !> Integrals over the elements distant from both points z, on one side of the surface: of sigma/(s - z1) ds, its divided difference
+   !> sigma/((s - z1) (s - z2)) ds, the derivative where the points are equal, and both for aimag(sigma). The other elements are in
+   !> the first `number` ranges of elements `near`, shape (2, leaves).
    pure subroutine find_distant(self, z, integrals, near, number)
       class(element_tree_type), intent(in) :: self
-      complex(wp), intent(in) :: z
-      complex(wp), intent(out) :: integrals(3)
+      complex(wp), intent(in) :: z(2)
+      complex(wp), intent(out) :: integrals(4)
       integer, intent(inout) :: near(:, :)
       integer, intent(out) :: number
       integer :: waiting(most_levels), group, places
-      complex(wp) :: away
+      complex(wp) :: away(2)
 
       integrals = 0.0_wp
       number = 0
@@ -239,7 +240,7 @@ contains
          group = waiting(places)
          places = places - 1
          away = z - self%middle(group)
-         if (real(away, wp)**2 + aimag(away)**2 > (distant*self%radius(group))**2) then
+         if (minval(real(away, wp)**2 + aimag(away)**2) > (distant*self%radius(group))**2) then
             call add_group(self%moments(:, group), self%shear_moments(:, group), self%radius(group), away, integrals)
          else if (self%halves(group) == 0) then
             number = number + 1
@@ -251,20 +252,24 @@ contains
       end do
    end subroutine find_distant
 
-   !> Add the integrals of a group, at a point `away` from its middle.
+   !> Add the integrals of a group, at points `away` from its middle. Polynomials of the ratio by Horner's scheme, whose intermediate
+   !> values are the coefficients of the divided difference.
    pure subroutine add_group(moments, shear_moments, radius, away, integrals)
-      complex(wp), intent(in) :: moments(0:), shear_moments(0:), away
+      complex(wp), intent(in) :: moments(0:), shear_moments(0:), away(2)
       real(wp), intent(in) :: radius
-      complex(wp), intent(inout) :: integrals(3)
-      complex(wp) :: ratio, sums(3)
+      complex(wp), intent(inout) :: integrals(4)
+      complex(wp) :: ratio(2), sums(2), differences(2)
       integer :: k
 
       ratio = radius/away
       sums = 0.0_wp
-      do k = min(most_moments, ceiling(digits(1.0_wp)*log(2.0_wp)/(-log(abs(ratio))))), 0, -1
-         sums = sums*ratio + [moments(k), (k + 1)*moments(k), shear_moments(k)]
+      differences = 0.0_wp
+      do k = min(most_moments, ceiling(digits(1.0_wp)*log(2.0_wp)/(-log(maxval(abs(ratio)))))), 0, -1
+         differences = differences*ratio(2) + sums
+         sums = sums*ratio(1) + [moments(k), shear_moments(k)]
       end do
-      integrals = integrals + [-sums(1)/away, sums(2)/away**2, -sums(3)/away]
+      differences = (sums + ratio(2)*differences)/(away(1)*away(2))
+      integrals = integrals + [-sums(1)/away(1), differences(1), -sums(2)/away(1), differences(2)]
    end subroutine add_group
 
    !> Index of the last of ascending values that is not above x; 0 for none.

@@ -7,7 +7,6 @@ module mfv_interior
    use mfv_interior_circle, only: circle_load_type, longest_element, new_circle_load
    use mfv_interior_half_plane, only: half_plane_load_type, new_half_plane_load
    use mfv_kinds, only: wp
-   use mfv_material, only: plane_strain
    use mfv_surface_tractions, only: find_traction_elements, traction_elements_type, zone_list_type
    use mfv_tolerances, only: certified, significant
    implicit none
@@ -30,8 +29,6 @@ module mfv_interior
       real(wp) :: side = 1.0_wp
       !> 1 for a disk, -1 for a hole: sign of the outward radial direction.
       real(wp) :: outward = 1.0_wp
-      !> Poisson's ratio in plane strain, 0 in plane stress: sigma_zz over sigma_xx + sigma_yy.
-      real(wp) :: out_of_plane = 0.0_wp
       !> Elements of the surface, their ends as arc lengths and over `length`, and p + i tau on the body as if it were the
       !> lower one.
       type(traction_elements_type) :: elements
@@ -75,12 +72,11 @@ contains
 
    !> The body under `pressure` and `shear` (on the lower body, force/length^2) at nodes with the arc lengths `arc` and the
    !> intervals `width`, lengths; shapes (nodes). `zones`: known edges of contact and stick zones. `upper`: the upper body.
-   !> `plane`: see mfv_material. `radial`: pressure along the radius of a disk or hole, not vertical. `available`: false for a
+   !> `radial`: pressure along the radius of a disk or hole, not vertical. `available`: false for a
    !> rigid body or a matrix.
-   subroutine new_interior(body, upper, plane, radial, arc, width, pressure, shear, zones, self, available)
+   subroutine new_interior(body, upper, radial, arc, width, pressure, shear, zones, self, available)
       type(body_type), intent(in) :: body
       logical, intent(in) :: upper, radial
-      integer, intent(in) :: plane
       real(wp), intent(in) :: arc(:), width(:), pressure(:), shear(:)
       type(zone_list_type), intent(in) :: zones
       type(interior_type), intent(out) :: self
@@ -93,12 +89,11 @@ contains
       self%body = body
       self%side = merge(-1.0_wp, 1.0_wp, upper)
       if (body%is_hole()) self%outward = -1.0_wp
-      if (plane == plane_strain) self%out_of_plane = body%elasticity%material%poisson_ratio
       self%peak = maxval(pressure)
       longest = huge(1.0_wp)
       if (self%body%deforms_as_circle()) longest = longest_element*body%radius
       seen = zones
-      seen%beta = self%side*zones%beta
+      if (upper) seen%pair = zones%pair%with_reversed_shear()
       if (radial) seen%turn = self%outward/body%radius
       call find_traction_elements(arc, width, pressure, self%side*shear, seen, longest, self%elements)
       associate (e => self%elements)
@@ -113,7 +108,7 @@ contains
             self%circle = new_circle_load(body%is_disk(), body%elasticity%material%kolosov, e%from, e%to, &
                                           polar(self, radial, e%from, e%first), polar(self, radial, e%to, e%last))
          else
-            self%half_plane = new_half_plane_load(e%from, e%to, e%first, e%last)
+            self%half_plane = new_half_plane_load(body%elasticity%material, e%from, e%to, e%first, e%last)
          end if
       end associate
    end subroutine new_interior
@@ -188,8 +183,8 @@ contains
          values(:3) = self%half_plane%stress(x/self%length, abs(y)/self%length)
          values(stress_xx) = values(stress_xx) + self%bulk
       end if
+      values(stress_zz) = self%body%elasticity%material%stress_out_of_plane(values(:3))
       values(stress_xy) = self%side*values(stress_xy)
-      values(stress_zz) = self%out_of_plane*(values(stress_xx) + values(stress_yy))
    end function stress
 
    !> Stress tangential to the surface, force/length^2, positive in tension, at an arc length from the origin of x.
@@ -218,7 +213,7 @@ contains
          traction = -conjg(self%half_plane%traction(arc/self%length))
       end if
       values([stress_xx, stress_yy, stress_xy]) = [along, real(traction, wp), aimag(traction)]
-      values(stress_zz) = self%out_of_plane*(along + real(traction, wp))
+      values(stress_zz) = self%body%elasticity%material%stress_out_of_plane(values(:3))
       surface_von_mises = von_mises_stress(values)
    end function surface_von_mises
 
@@ -246,7 +241,7 @@ contains
 
       values = 0.0_wp
       values(stress_xx) = self%bulk
-      values(stress_zz) = self%out_of_plane*self%bulk
+      values(stress_zz) = self%body%elasticity%material%stress_out_of_plane(values(:3))
    end function remote_stress
 
    !> All stresses of `stress_names` at (x, y), force/length^2, and the direction in radians; NaN outside the body; polar

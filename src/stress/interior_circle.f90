@@ -149,7 +149,7 @@ contains
       real(wp) :: stress(3)
       complex(wp), parameter :: i = (0.0_wp, 1.0_wp)
       real(wp), parameter :: tolerance = 8.0_wp*epsilon(1.0_wp)
-      complex(wp) :: zeta, z, plus, minus, slope, integral(2), derivative(2), potential, potential_slope, rest, force, distant(3)
+      complex(wp) :: zeta, z, plus, minus, slope, integral(2), derivative(2), potential, potential_slope, rest, force, distant(4)
       real(wp) :: beyond, kelvin
       integer :: near(2, self%tree%leaves()), number, j, k
 
@@ -157,7 +157,7 @@ contains
       z = 1.0_wp + zeta
       beyond = 2.0_wp*real(zeta, wp) + abs(zeta)**2
       if (abs(beyond) <= tolerance*(2.0_wp*abs(real(zeta, wp)) + abs(zeta)**2)) beyond = 0.0_wp
-      call self%tree%find_distant(zeta, distant, near, number)
+      call self%tree%find_distant([zeta, zeta], distant, near, number)
       plus = distant(1)
       minus = distant(1) - 2.0_wp*i*distant(3)
       slope = distant(2)
@@ -201,10 +201,10 @@ contains
       class(circle_load_type), intent(in) :: self
       real(wp), intent(in) :: angle
       real(wp) :: from, to, growth, sum, radial, kelvin, part
-      complex(wp) :: distant(3)
+      complex(wp) :: distant(4)
       integer :: near(2, self%tree%leaves()), number, j, k
 
-      call self%tree%find_distant(from_origin_to(angle), distant, near, number)
+      call self%tree%find_distant(spread(from_origin_to(angle), 1, 2), distant, near, number)
       sum = real(distant(3), wp)
       radial = 0.0_wp
       do k = 1, number

@@ -1,17 +1,29 @@
 !> Stresses inside a half-plane under tractions that are linear on elements of its surface, in closed form.
 !>
-!> Muskhelishvili's potentials of the lower half-plane with sigma_yy = -p, sigma_xy = tau on y = 0 (Muskhelishvili 1953,
-!> sections 90 to 93; Johnson 1985, section 2.5, for uniform and triangular tractions): Phi(z) = 1/(2 pi i) integral of (p + i
-!> tau)/(t - z) dt, sigma_xx + sigma_yy = 4 Re Phi, sigma_yy - sigma_xx + 2 i sigma_xy = -4 i y Phi' - 2/pi integral of tau/(t
-!> - z) dt. The integrals over an element are elementary; for elements that are short compared with their distance, series
-!> avoid cancellation; groups of distant elements act together (mfv_element_tree).
+!> With sigma_yy = -p, sigma_xy = tau on y = 0, the integrals N(z) of p/(t - z) dt and T(z) of tau/(t - z) dt, and the roots mu1 and
+!> mu2 of mfv_material, the derivatives of Lekhnitskii's potentials (1963, section 7) in the lower half-plane are
+!>
+!>     Phi1 = (mu2 N - T)/(2 pi i (mu2 - mu1)) at z1 = x + mu1 y,    Phi2 = (T - mu1 N)/(2 pi i (mu2 - mu1)) at z2 = x + mu2 y
+!>
+!> and sigma_xx, sigma_yy and -sigma_xy twice the real parts of the sums of mu^2 Phi, Phi and mu Phi. With the divided differences
+!> N' = (N(z2) - N(z1))/(z2 - z1) and T', nothing is divided by mu2 - mu1:
+!>
+!>     sigma_xx = 2 Re [(mu1 + mu2) T + mu2^2 y T' - mu1 mu2 (N + mu2 y N')]/(2 pi i)
+!>     sigma_yy = 2 Re [N - mu1 y N' + y T']/(2 pi i)
+!>     sigma_xy = 2 Re [mu1 mu2 y N' - T - mu2 y T']/(2 pi i)
+!>
+!> N and T at z1. With equal roots N' and T' are derivatives: of an isotropic material Muskhelishvili's solution (1953, sections 90 to
+!> 93; Johnson 1985, section 2.5, for uniform and triangular tractions). The integrals over an element are elementary; for elements
+!> that are short compared with their distance, series avoid cancellation; groups of distant elements act together
+!> (mfv_element_tree).
 module mfv_interior_half_plane
    use mfv_element_tree, only: element_tree_type, last_not_above, new_straight_tree
    use mfv_kinds, only: pi, wp
    use mfv_logarithms, only: log_ratio
+   use mfv_material, only: material_type
    implicit none
    private
-   public :: half_plane_load_type, new_half_plane_load
+   public :: half_plane_load_type, new_half_plane_load, line_load_stress, surface_stress_of
 
    !> Terms of the power series, which converge at least as 1/25^k: enough for the kind of real numbers.
    integer, parameter :: most_terms = int(0.25_wp*digits(1.0_wp)) + 2
@@ -19,6 +31,8 @@ module mfv_interior_half_plane
    !> A half-plane under tractions p + i tau that are linear on elements.
    type :: half_plane_load_type
       private
+      type(material_type) :: material
+      complex(wp) :: root(2) = (0.0_wp, 1.0_wp)
       !> Ends of the elements, lengths, and tractions there, force/length^2; shapes (elements).
       real(wp), allocatable :: from(:), to(:)
       complex(wp), allocatable :: first(:), last(:)
@@ -33,10 +47,13 @@ contains
 
    !> Elements from `from` to `to`, lengths (ascending, for speed), with tractions p + i tau linear from `first` to `last`,
    !> force/length^2; shapes (elements).
-   pure type(half_plane_load_type) function new_half_plane_load(from, to, first, last) result(self)
+   pure type(half_plane_load_type) function new_half_plane_load(material, from, to, first, last) result(self)
+      type(material_type), intent(in) :: material
       real(wp), intent(in) :: from(:), to(:)
       complex(wp), intent(in) :: first(:), last(:)
 
+      self%material = material
+      self%root = material%roots()
       self%from = from
       self%to = to
       self%first = first
@@ -50,49 +67,95 @@ contains
       class(half_plane_load_type), intent(in) :: self
       real(wp), intent(in) :: x, depth
       real(wp) :: stress(3)
-      complex(wp), parameter :: i = (0.0_wp, 1.0_wp)
-      complex(wp) :: potential, slope, shear, mean, tilt, integral(2), derivative(2), distant(3)
+      complex(wp) :: sums(4), mean, tilt, integral(2), difference(2), points(2)
       integer :: near(2, self%tree%leaves()), number, j, k
 
-      call self%tree%find_distant(cmplx(x, -depth, wp), distant, near, number)
-      potential = distant(1)
-      slope = distant(2)
-      shear = distant(3)
+      points = x - self%root*depth
+      call self%tree%find_distant(points, sums, near, number)
       do k = 1, number
          do j = near(1, k), near(2, k)
             mean = 0.5_wp*(self%first(j) + self%last(j))
             tilt = 0.5_wp*(self%last(j) - self%first(j))
-            call element_integrals(self%from(j) - x, self%to(j) - x, depth, integral, derivative)
-            potential = potential + mean*integral(1) + tilt*integral(2)
-            slope = slope + mean*derivative(1) + tilt*derivative(2)
-            shear = shear + aimag(mean)*integral(1) + aimag(tilt)*integral(2)
+            call element_integrals(self%from(j) - x, self%to(j) - x, depth, self%root, integral, difference)
+            sums(1) = sums(1) + mean*integral(1) + tilt*integral(2)
+            sums(2) = sums(2) + mean*difference(1) + tilt*difference(2)
+            sums(3) = sums(3) + aimag(mean)*integral(1) + aimag(tilt)*integral(2)
+            sums(4) = sums(4) + aimag(mean)*difference(1) + aimag(tilt)*difference(2)
          end do
       end do
-      potential = potential/(2.0_wp*pi*i)
-      shear = depth*slope/pi - shear/pi
-      stress(1) = 2.0_wp*real(potential, wp) - real(shear, wp)
-      stress(2) = 2.0_wp*real(potential, wp) + real(shear, wp)
-      stress(3) = aimag(shear)
+      stress = stress_of(self%material, self%root, depth, sums)
    end function stress
 
-   !> sigma_xx at the surface point `x`, equal to that of `stress`, in real numbers: -p(x) + 2/pi integral of tau/(t - x) dt.
+   !> Stresses as of `stress` at the depth `depth` > 0, length, under line loads `normal` into the surface and `shear` to the right,
+   !> force/length, at the distances `right` to the right, lengths; shapes (loads). Isotropic: Flamant (Johnson 1985, section 2.3).
+   pure function line_load_stress(material, right, depth, normal, shear) result(stress)
+      type(material_type), intent(in) :: material
+      real(wp), intent(in) :: right(:), depth, normal(:), shear(:)
+      real(wp) :: stress(3)
+      complex(wp) :: roots(2), sums(4)
+      complex(wp), dimension(size(right)) :: first, both, load
+
+      roots = material%roots()
+      first = 1.0_wp/(right + roots(1)*depth)
+      both = first/(right + roots(2)*depth)
+      load = cmplx(normal, shear, wp)
+      sums = [sum(load*first), sum(load*both), sum(shear*first), sum(shear*both)]
+      stress = stress_of(material, roots, depth, sums)
+   end function line_load_stress
+
+   !> Stresses from the integrals `sums` of p + i tau and of tau: each at the first point, and its divided difference.
+   pure function stress_of(material, roots, depth, sums) result(stress)
+      type(material_type), intent(in) :: material
+      complex(wp), intent(in) :: roots(2), sums(4)
+      real(wp), intent(in) :: depth
+      complex(wp), parameter :: i = (0.0_wp, 1.0_wp)
+      complex(wp) :: normal, shear, of_normal, of_shear
+      real(wp) :: stress(3)
+
+      shear = sums(3)
+      normal = sums(1) - i*shear
+      of_shear = -depth*sums(4)
+      of_normal = -depth*sums(2) - i*of_shear
+      ! 2 Re f/(2 pi i) = Im f/pi.
+      associate (mu => roots, total => material%root_sum, product => material%root_product)
+         stress(1) = aimag(total*shear + mu(2)**2*of_shear - product*(normal + mu(2)*of_normal))/pi
+         stress(2) = aimag(normal - mu(1)*of_normal + of_shear)/pi
+         stress(3) = aimag(product*of_normal - shear - mu(2)*of_shear)/pi
+      end associate
+   end function stress_of
+
+   !> sigma_xx at the surface point `x`, equal to that of `stress`, in real numbers: with mu1 + mu2 = a + i b and mu1 mu2 = c + i d
+   !> c p(x) - a tau(x) + 1/pi integral of (b tau - d p)/(t - x) dt; isotropic: c = -1, b = 2.
    pure real(wp) function surface_stress(self, x)
       class(half_plane_load_type), intent(in) :: self
       real(wp), intent(in) :: x
-      real(wp) :: pressure, sum
-      complex(wp) :: distant(3)
+      real(wp) :: here(2), sums(2)
+      complex(wp) :: distant(4), surface(2)
       integer :: near(2, self%tree%leaves()), number, j, k
 
-      call self%tree%find_distant(cmplx(x, 0.0_wp, wp), distant, near, number)
-      pressure = 0.0_wp
-      sum = real(distant(3), wp)
+      surface = x
+      call self%tree%find_distant(surface, distant, near, number)
+      here = 0.0_wp
+      ! Along the surface integrals of p and of tau are real.
+      sums = [real(distant(1), wp), real(distant(3), wp)]
       do k = 1, number
          do j = near(1, k), near(2, k)
-            call add_surface_element(self%from(j) - x, self%to(j) - x, self%first(j), self%last(j), sum, pressure)
+            call add_surface_element(self%from(j) - x, self%to(j) - x, self%first(j), self%last(j), sums, here)
          end do
       end do
-      surface_stress = 2.0_wp/pi*sum - pressure
+      surface_stress = surface_stress_of(self%material, here(1), here(2), sums(1)/pi, sums(2)/pi)
    end function surface_stress
+
+   !> sigma_xx at a surface point with the tractions `pressure` and `shear`, force/length^2, and the integrals of p/(t - x) dt/pi and
+   !> tau/(t - x) dt/pi.
+   elemental real(wp) function surface_stress_of(material, pressure, shear, of_pressure, of_shear) result(stress)
+      type(material_type), intent(in) :: material
+      real(wp), intent(in) :: pressure, shear, of_pressure, of_shear
+
+      associate (total => material%root_sum, product => material%root_product)
+         stress = aimag(total)*of_shear - aimag(product)*of_pressure + real(product, wp)*pressure - real(total, wp)*shear
+      end associate
+   end function surface_stress_of
 
    !> p + i tau at the surface point `x`, 0 outside all elements.
    pure complex(wp) function traction(self, x)
@@ -107,12 +170,14 @@ contains
       traction = self%first(j) + (self%last(j) - self%first(j))*((x - self%from(j))/(self%to(j) - self%from(j)))
    end function traction
 
-   !> Add the integral of tau/t over an element from `left` to `right`, and the pressure at 0 if it is there.
-   pure subroutine add_surface_element(left, right, first, last, sum, pressure)
+   !> Add the integrals of p/t and tau/t over an element from `left` to `right`, and p and tau at 0 if it is there: of two elements
+   !> that meet there, the larger p.
+   pure subroutine add_surface_element(left, right, first, last, sums, here)
       real(wp), intent(in) :: left, right
       complex(wp), intent(in) :: first, last
-      real(wp), intent(inout) :: sum, pressure
+      real(wp), intent(inout) :: sums(2), here(2)
       real(wp) :: middle, half, ratio, square, power, growth, tilted
+      complex(wp) :: inside
       integer :: k
       !> Factors of the series of the distant elements.
       real(wp), parameter :: factor(most_terms) = [(2.0_wp/(2*k + 1), k=1, most_terms)]
@@ -135,69 +200,97 @@ contains
          if (abs(left) > 0.0_wp) growth = -log(abs(left))
          if (abs(right) > 0.0_wp) growth = growth + log(abs(right))
          tilted = 2.0_wp - growth*middle/half
-         if (left <= 0.0_wp .and. right >= 0.0_wp) &
-            pressure = max(pressure, real(first, wp) - left/(right - left)*real(last - first, wp))
+         if (left <= 0.0_wp .and. right >= 0.0_wp) then
+            inside = first - left/(right - left)*(last - first)
+            if (real(inside, wp) > here(1)) here = [real(inside, wp), aimag(inside)]
+         end if
       end if
-      sum = sum + 0.5_wp*(aimag(first + last)*growth + aimag(last - first)*tilted)
+      sums = sums + 0.5_wp*([real(first + last, wp), aimag(first + last)]*growth &
+                            + [real(last - first, wp), aimag(last - first)]*tilted)
    end subroutine add_surface_element
 
-   !> Integrals over an element of 1/(t - z) and u/(t - z) dt, u from -1 to 1, and their derivatives with respect to z (zero
-   !> on the surface, where they are not needed). `left`, `right`: its ends relative to the point; `depth` of the point.
-   pure subroutine element_integrals(left, right, depth, integral, derivative)
+   !> Integrals over an element of 1/(t - z1) and u/(t - z1) dt, u from -1 to 1, z1 = -mu1 depth, and their divided differences
+   !> between z1 and z2 (zero on the surface, where they are not needed). `left`, `right`: its ends relative to the point; `depth` of
+   !> the point; `roots`: mu1 and mu2.
+   pure subroutine element_integrals(left, right, depth, roots, integral, difference)
       real(wp), intent(in) :: left, right, depth
-      complex(wp), intent(out) :: integral(2), derivative(2)
+      complex(wp), intent(in) :: roots(2)
+      complex(wp), intent(out) :: integral(2), difference(2)
       real(wp), parameter :: short = 0.04_wp
-      real(wp) :: middle, half, square_left, square_right
-      complex(wp) :: place
+      real(wp) :: middle, half, from_left, from_right, below
+      complex(wp) :: place(2), to_left(2), to_right(2)
 
       middle = 0.5_wp*(left + right)
       half = 0.5_wp*(right - left)
-      place = cmplx(-middle, -depth, wp)/half
-      if (short*(middle**2 + depth**2) > half**2) then
-         call distant_integrals(half, place, integral, derivative)
+      place = (-middle - roots*depth)/half
+      if (short*minval(real(place, wp)**2 + aimag(place)**2) > 1.0_wp) then
+         call distant_integrals(half, place, integral, difference)
          return
       end if
-      square_left = left**2 + depth**2
-      square_right = right**2 + depth**2
-      integral(1) = cmplx(0.0_wp, -atan2(2.0_wp*half*depth, depth**2 + left*right), wp)
-      derivative = 0.0_wp
-      if (min(square_left, square_right) > (epsilon(1.0_wp)*half)**2) then
-         integral(1) = integral(1) + 0.5_wp*log_ratio(square_left, square_right, 4.0_wp*half*middle)
-         if (depth > 0.0_wp) derivative(1) = 2.0_wp*half/(cmplx(left, depth, wp)*cmplx(right, depth, wp))
+      ! From the points to the ends; of the first one along the surface and down.
+      to_left = left + roots*depth
+      to_right = right + roots*depth
+      from_left = real(to_left(1), wp)
+      from_right = real(to_right(1), wp)
+      below = aimag(to_left(1))
+      integral(1) = cmplx(0.0_wp, -atan2(2.0_wp*half*below, below**2 + from_left*from_right), wp)
+      difference = 0.0_wp
+      if (min(from_left**2, from_right**2) + below**2 > (epsilon(1.0_wp)*half)**2) then
+         integral(1) = integral(1) + 0.5_wp*log_ratio(from_left**2 + below**2, from_right**2 + below**2, &
+                                                      2.0_wp*half*(from_left + from_right))
+         if (depth > 0.0_wp) difference(1) = 2.0_wp*half/(to_left(2)*to_right(1)) &
+                                             *log_over(2.0_wp*half*(place(2) - place(1))*half/(to_left(2)*to_right(1)))
       else
          ! At an end on the surface the singular logarithm cancels with that of the next element.
          integral(1) = cmplx(merge(1.0_wp, -1.0_wp, middle > 0.0_wp)*log(2.0_wp*half), -0.5_wp*pi, wp)
       end if
-      integral(2) = place*integral(1) + 2.0_wp
-      if (depth > 0.0_wp) derivative(2) = integral(1)/half + place*derivative(1)
+      integral(2) = place(1)*integral(1) + 2.0_wp
+      if (depth > 0.0_wp) difference(2) = integral(1)/half + place(2)*difference(1)
    end subroutine element_integrals
 
-   !> The same as power series, for elements that are short compared with their distance. `place`: the point relative to the
+   !> ln(1 + w)/w; 1 at 0.
+   pure complex(wp) function log_over(w)
+      complex(wp), intent(in) :: w
+
+      log_over = 1.0_wp
+      if (.not. abs(w) > 0.0_wp) return
+      associate (x => real(w, wp), y => aimag(w))
+         log_over = cmplx(0.5_wp*log_ratio(1.0_wp, (1.0_wp + x)**2 + y**2, 2.0_wp*x + x**2 + y**2), atan2(y, 1.0_wp + x), wp)/w
+      end associate
+   end function log_over
+
+   !> The same as power series, for elements that are short compared with their distance. `place`: the points relative to the
    !> middle, over half the length of the element.
-   pure subroutine distant_integrals(half, place, integral, derivative)
+   pure subroutine distant_integrals(half, place, integral, difference)
       real(wp), intent(in) :: half
-      complex(wp), intent(in) :: place
-      complex(wp), intent(out) :: integral(2), derivative(2)
-      complex(wp) :: ratio, square, power
-      real(wp) :: size_of_power
+      complex(wp), intent(in) :: place(2)
+      complex(wp), intent(out) :: integral(2), difference(2)
+      complex(wp) :: ratio(2), square(2), power, change
+      real(wp) :: size_of_power, least_decrease
       integer :: k
 
       ratio = 1.0_wp/place
       square = ratio**2
+      ! The power k of the first square, and its divided difference.
       power = 1.0_wp
+      change = 0.0_wp
       size_of_power = 1.0_wp
+      least_decrease = maxval(abs(real(square, wp)) + abs(aimag(square)))
       integral(2) = 0.0_wp
-      derivative(2) = 0.0_wp
+      difference = 0.0_wp
       do k = 1, most_terms
          if (size_of_power <= 0.1_wp*epsilon(1.0_wp)) exit
-         power = power*square
-         size_of_power = abs(real(power, wp)) + abs(aimag(power))
+         change = change*square(2) + power
+         power = power*square(1)
+         size_of_power = size_of_power*least_decrease
          integral(2) = integral(2) - 2.0_wp*power/(2*k + 1)
-         derivative(2) = derivative(2) + 2.0_wp*power*(2*k)/(2*k + 1)
+         difference(2) = difference(2) - 2.0_wp*change/(2*k + 1)
       end do
-      integral(1) = ratio*(integral(2) - 2.0_wp)
-      derivative(1) = 2.0_wp*square/(half*(1.0_wp - square))
-      derivative(2) = derivative(2)*ratio/half
+      integral(1) = ratio(1)*(integral(2) - 2.0_wp)
+      ! From the squares to the ratios, and from these to the points.
+      difference(2) = difference(2)*(ratio(1) + ratio(2))
+      difference(1) = integral(2) - 2.0_wp + ratio(2)*difference(2)
+      difference = -difference*ratio(1)*ratio(2)/half
    end subroutine distant_integrals
 
 end module mfv_interior_half_plane

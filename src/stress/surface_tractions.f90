@@ -12,6 +12,7 @@ module mfv_surface_tractions
                                  find_solved_distance
    use mfv_kinds, only: pi, wp
    use mfv_lapack, only: dgesv
+   use mfv_near_field, only: near_field_type
    use mfv_quadrature, only: gauss_points
    use mfv_tolerances, only: certified, significant, visible
    implicit none
@@ -22,12 +23,13 @@ module mfv_surface_tractions
    real(wp), parameter :: half_interval = 0.5_wp*(1.0_wp - significant)
 
    !> Edges, arc lengths, left one first; shapes (2, zones). At a sharp edge the pressure does not vanish: the end of a body's
-   !> surface. `beta`: Dundurs' parameter, 0 without coupling. `turn`: angle by which the normals turn per arc length, radians per
+   !> surface. `pair`: near field of both bodies, 0 without coupling. `turn`: angle by which the normals turn per arc length, radians per
    !> length: with radial normals 1/R for a disk, -1/R for a hole; 0 for parallel normals.
    type :: zone_list_type
       real(wp), allocatable :: contact(:, :), stick(:, :)
       logical, allocatable :: sharp(:, :)
-      real(wp) :: beta = 0.0_wp, turn = 0.0_wp
+      type(near_field_type) :: pair
+      real(wp) :: turn = 0.0_wp
       !> Minimum of elements in all contact zones: with fewer, the point of the largest von Mises stress, a flat maximum, would
       !> move to their ends.
       integer :: fewest_elements = 300
@@ -194,13 +196,13 @@ contains
       if (patch%has_ratio) then
          patch%stick = stick_zones(patch, zones)
          call find_limit(patch)
-         call find_powers(patch, zones%beta)
+         call find_powers(patch, zones%pair)
       else
          allocate (patch%stick(0))
          call fit_zone(patch, patch%shear, patch%contact)
          patch%shear_rest = patch%contact%rest
       end if
-      call find_known(patch, zones%beta)
+      call find_known(patch, zones%pair)
       if (patch%counted) call locate_edges(patch)
       values = patch%pressure
       call correct_error(patch, patch%contact, values)
@@ -231,10 +233,10 @@ contains
    end subroutine locate_edges
 
    !> Find edges with a known discretisation error: of contact zones with enough slipping nodes, and of stick zones without
-   !> coupling (`beta` 0).
-   subroutine find_known(patch, beta)
+   !> coupling of the `pair`.
+   subroutine find_known(patch, pair)
       type(fitted_patch_type), intent(inout) :: patch
-      real(wp), intent(in) :: beta
+      type(near_field_type), intent(in) :: pair
       integer, parameter :: fewest_nodes = 5, fewest_slipping = 4
       logical :: slips(size(patch%arc))
       integer :: i, n
@@ -243,7 +245,7 @@ contains
       patch%contact%known = patch%has_ratio .and. n >= fewest_nodes .and. patch%contact%power > least_power .and. &
                             patch%contact%power < most_power
       if (.not. patch%has_ratio) return
-      if (abs(beta) > 0.0_wp) then
+      if (pair%coupling_ratio() > 0.0_wp) then
          slips = outside_stick_zones(patch)
          patch%contact%known = patch%contact%known .and. &
                                [all(slips(:min(n, fewest_slipping))), all(slips(max(1, n - fewest_slipping + 1):))]
@@ -255,9 +257,9 @@ contains
    end subroutine find_known
 
    !> Exponents at edges next to slipping nodes: see mfv_zone_edges.
-   subroutine find_powers(patch, beta)
+   subroutine find_powers(patch, pair)
       type(fitted_patch_type), intent(inout) :: patch
-      real(wp), intent(in) :: beta
+      type(near_field_type), intent(in) :: pair
       integer :: i, side, outermost
 
       do side = 1, 2
@@ -275,12 +277,12 @@ contains
          real(wp), intent(in) :: places(:)
          real(wp) :: exponent_shift(size(places))
 
-         exponent_shift = root_shift(beta*patch%limit%at(places))
+         exponent_shift = root_shift(pair%edge_product(patch%limit%at(places)))
       end function exponent_shift
    end subroutine find_powers
 
-   !> Deviation of the exponent from 1/2 at the edge of a slip zone, for `product`, Dundurs' beta times tau/p (Johnson 1985,
-   !> section 8.1). Below 1/2 in magnitude, so that exponents remain positive.
+   !> Deviation of the exponent from 1/2 at the edge of a slip zone, for the `product` of mfv_near_field. Below 1/2 in magnitude, so
+   !> that exponents remain positive.
    elemental real(wp) function root_shift(product)
       real(wp), intent(in) :: product
       real(wp), parameter :: most = 0.49_wp

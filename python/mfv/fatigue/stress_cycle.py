@@ -76,8 +76,13 @@ def stress_cycle(
 
     `body`: 'lower' or 'upper'. `states`: the numbers in `result.steps`, from 1, of the states of the cycle; those of `last_cycle` by
     default. The states of a result are its turning points; `mfv.load_history.with_states_between` computes more, which a cycle out of
-    phase needs. Raises ValueError as `last_cycle` and as `mfv.stress.stress`.
+    phase needs. Raises ValueError for an anisotropic body, and as `last_cycle` and as `mfv.stress.stress`.
     """
+    if f"{body}_compliance_11" in result.scene:
+        raise ValueError(
+            f"the {body} body is anisotropic: pass its stresses (mfv.stress.stress) and the constants of an isotropic material to "
+            "mfv.fatigue.StressCycle"
+        )
     across, up = (np.array(values, dtype=np.float64) for values in np.broadcast_arrays(x, y))
     numbers = last_cycle(result) if states is None else tuple(states)
     result = kept_states(result)

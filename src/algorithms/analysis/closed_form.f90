@@ -3,6 +3,7 @@ module mfv_closed_form
    use mfv_compliance, only: block_up, block_wt
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_approach, motion_shift, motion_rotation
+   use mfv_near_field, only: near_field_type
    use mfv_node_status, only: node_stick
    use mfv_reference_carter, only: carter_shear
    use mfv_reference_flat_punch, only: flat_punch_pressure
@@ -142,40 +143,50 @@ contains
                  (scene%upper%circular() .or. scene%upper%is_straight()) .and. scene%curvature() > 0.0_wp
    end function is_hertz
 
-   !> Whether Dundurs' beta vanishes: both bodies of one material. Different shapes couple by the order of a/R only.
+   !> Whether the near field of both bodies together has no coupling: they are of one material. Different shapes couple by the order of
+   !> a/R only.
    pure logical function alike(scene)
       type(scene_type), intent(in) :: scene
       real(wp), parameter :: none = 1.0e-12_wp
+      type(near_field_type) :: pair
 
-      alike = abs(scene%beta()) < none
+      pair = scene%near_field()
+      alike = pair%coupling_ratio() < none
    end function alike
 
    !> Monotonic pressing with friction from the start and Goodman's coupling.
    logical function is_spence(simulation)
       type(simulation_type), intent(in) :: simulation
+      type(near_field_type) :: pair
 
+      pair = simulation%contact%model%scene%near_field()
       associate (model => simulation%contact%model)
          is_spence = (is_hertz(model%scene) .or. model%scene%upper%has_sharp_ends()) .and. &
                      model%compliance%elastic_block(block_up) .and. &
                      model%scene%friction%is_coulomb() .and. model%tangential .and. .not. alike(model%scene)
       end associate
-      is_spence = is_spence .and. simulation%load_summary%pressed_harder
+      is_spence = is_spence .and. simulation%load_summary%pressed_harder .and. .not. abs(pair%mixed) > 0.0_wp
    end function is_spence
 
+   !> Of orthotropic bodies the shear times root(At/A) is that of isotropic ones with as many times the friction (docs/theory.md).
    subroutine add_spence(form, simulation)
       type(closed_form_type), intent(inout) :: form
       type(simulation_type), intent(in) :: simulation
+      type(near_field_type) :: pair
+      real(wp) :: factor
 
+      pair = simulation%contact%model%scene%near_field()
+      factor = sqrt(pair%shear_ratio())
       associate (x => simulation%contact%model%x, scene => simulation%contact%model%scene, &
                  force => simulation%contact%state%fields%force(motion_approach))
          if (is_hertz(scene)) then
-            form%shear = spence_cylinder_shear(x, force, form%half_width, scene%friction%static%largest(), &
+            form%shear = spence_cylinder_shear(x, force, form%half_width, factor*scene%friction%static%largest(), &
                                                abs(scene%beta()))
          else
-            form%shear = spence_flat_punch_shear(x, force, form%half_width, scene%friction%static%largest(), &
+            form%shear = spence_flat_punch_shear(x, force, form%half_width, factor*scene%friction%static%largest(), &
                                                  abs(scene%beta()))
          end if
-         form%shear = sign(1.0_wp, scene%beta())*form%shear
+         form%shear = sign(1.0_wp/factor, scene%beta())*form%shear
          form%shear_source = 'Spence 1973; dissertation eqs. 3.4 to 3.6, corrected'
       end associate
    end subroutine add_spence
@@ -200,11 +211,14 @@ contains
       type(closed_form_type), intent(inout) :: form
       type(simulation_type), intent(in) :: simulation
       type(mindlin_history_type) :: history
+      type(near_field_type) :: pair
       integer :: i
 
       associate (contact => simulation%contact, scene => simulation%contact%model%scene, &
                  force => simulation%contact%state%fields%force(motion_approach))
-         history = new_mindlin_history(force, form%half_width, form%indenter, scene%datum(), scene%friction%static%largest())
+         pair = scene%near_field()
+         history = new_mindlin_history(force, form%half_width, form%indenter, scene%datum(by_shear=.true.), &
+                                       scene%friction%static%largest())
          do i = 1, simulation%snapshot_count
             call history%load(simulation%snapshots(i)%state%fields%force(motion_shift))
          end do
@@ -217,7 +231,7 @@ contains
          allocate (form%shift(contact%history%records))
          do i = 1, contact%history%records
             call history%load(contact%history%record(i)%force(motion_shift))
-            form%shift(i) = history%shift()
+            form%shift(i) = pair%shear_ratio()*history%shift()
          end do
       end associate
    end subroutine add_mindlin

@@ -551,7 +551,7 @@ contains
             if (name /= 'loss_factor') allowance = abs(values(observable_place(name)))* &
                                                    min(slip%error_number()*contact_interval(model, simulation%contact%state)**2, &
                                                        largest_resolved_error)
-            call add_hidden(name, sum(hidden_slip()**2)*model%compliance%modulus/unit)
+            call add_hidden(name, sum(hidden_slip()**2)*model%compliance%modulus/(model%compliance%shear_ratio*unit))
          end associate
       end subroutine add_coarse_slip
 
@@ -566,7 +566,8 @@ contains
             touching = in_contact(state%status)
             if (.not. any(touching .and. abs(state%fields%shear) > 0.0_wp)) return
             ends = [findloc(touching, .true., dim=1), findloc(touching, .true., dim=1, back=.true.)]
-            slip = model%static_friction(ends)*state%fields%pressure(ends)*model%width(ends)/model%compliance%modulus
+            slip = model%static_friction(ends)*state%fields%pressure(ends)*model%width(ends)*model%compliance%shear_ratio &
+                   /model%compliance%modulus
          end associate
       end function hidden_slip
 

@@ -3,16 +3,16 @@
 !>
 !> Largest stresses need a search in each state (mfv_stress_search), which costs more than a load segment. Estimates of them (1 %
 !> too small as a median, and less sensitive to slip zones of one or two nodes) find the state that is worth it. The surface stress
-!> is -p + 2/pi integral of tau/(t - x) dt (Johnson 1985, eq. 2.23). At an edge of the contact tau vanishes as a root: in each
-!> interval it is taken as proportional to root((t - l)(r - t)), between the edges l and r, whose integrals are elementary.
+!> follows from p, tau and the integrals of p/(t - x) dt and tau/(t - x) dt (mfv_interior_half_plane). At an edge of the contact both
+!> vanish as a root: in each interval they are taken as proportional to root((t - l)(r - t)), between the edges l and r, whose integrals are elementary.
 module mfv_load_extremes
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use mfv_body, only: body_type
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
    use mfv_interior, only: has_interior, von_mises_stress
+   use mfv_interior_half_plane, only: line_load_stress, surface_stress_of
    use mfv_kinds, only: pi, wp
-   use mfv_material, only: plane_strain
    use mfv_motions, only: bulk_motions, motion_approach, motion_count
    use mfv_node_status, only: in_contact
    use mfv_tolerances, only: significant, visible
@@ -74,9 +74,10 @@ module mfv_load_extremes
       procedure :: add => add_slip
    end type slip_range_type
 
-   !> Tractions at some places of the surface: arc lengths; 1/pi integral of tau/(t - x) dt, p and tau, force/length^2; (places).
+   !> Tractions at some places of the surface: arc lengths; p, tau, and 1/pi integral of p/(t - x) dt, where a body needs it, and of
+   !> tau/(t - x) dt, force/length^2; (places).
    type :: surface_samples_type
-      real(wp), allocatable :: arc(:), integral(:), pressure(:), shear(:)
+      real(wp), allocatable :: arc(:), pressure(:), shear(:), of_pressure(:), of_shear(:)
    end type surface_samples_type
 
 contains
@@ -260,7 +261,7 @@ contains
          integer, intent(in) :: side
          !> Part of the shear that a tension between the samples may have, so that states with and without it differ.
          real(wp), parameter :: between = 0.1_wp
-         real(wp) :: bulk, hoop
+         real(wp) :: bulk, hoop, sign
 
          estimates([candidate_tension(side), candidate_von_mises(side)]) = -1.0_wp
          if (.not. has_interior(body)) return
@@ -268,7 +269,9 @@ contains
          ! A circle is in tension also beside a contact without shear, in proportion to the force.
          hoop = 0.0_wp
          if (body%deforms_as_circle()) hoop = state%fields%force(motion_approach)/(pi*body%radius)
-         associate (stress => bulk + merge(2.0_wp, -2.0_wp, side == 1)*samples%integral - samples%pressure)
+         sign = merge(1.0_wp, -1.0_wp, side == 1)
+         associate (stress => bulk + surface_stress_of(body%elasticity%material, samples%pressure, sign*samples%shear, &
+                                                       samples%of_pressure, sign*samples%of_shear))
             estimates(candidate_tension(side)) = hoop + max(max(bulk, 0.0_wp) + between*maxval(abs(state%fields%shear)), &
                                                             maxval(stress))
             if (body%yield_strength > 0.0_wp) &
@@ -286,7 +289,7 @@ contains
       integer, parameter :: most_between = 12
       logical :: is_sample(model%nodes())
       integer, allocatable :: nodes(:)
-      real(wp), allocatable :: ends(:), steps(:)
+      real(wp), allocatable :: ends(:)
       integer :: first(size(patches) + 1), i, j
 
       is_sample = .false.
@@ -300,33 +303,54 @@ contains
          end associate
       end do
       nodes = pack([(i, i=1, size(is_sample))], is_sample)
-      call find_steps()
       samples%arc = [model%arc(nodes), patches%left, patches%right]
-      samples%integral = [(integral_over(1, size(ends), model%arc(nodes(i))), i=1, size(nodes)), &
-                          (integral_at_edge(-1, i), i=1, size(patches)), (integral_at_edge(1, i), i=1, size(patches))]/pi
       samples%pressure = [state%fields%pressure(nodes), (0.0_wp, i=1, 2*size(patches))]
       samples%shear = [state%fields%shear(nodes), (0.0_wp, i=1, 2*size(patches))]
+      call find_ends()
+      samples%of_shear = integrals_of(state%fields%shear)
+      samples%of_pressure = 0.0_wp*samples%pressure
+      if (abs(aimag(model%scene%lower%elasticity%material%root_product)) > 0.0_wp .or. &
+          abs(aimag(model%scene%upper%elasticity%material%root_product)) > 0.0_wp) &
+         samples%of_pressure = integrals_of(state%fields%pressure)
 
    contains
 
-      !> Ends of the intervals in contact, and the steps down of tau there: those of a patch begin with the `first` one.
-      subroutine find_steps()
+      !> Ends of the intervals in contact: those of a patch begin with the `first` one.
+      subroutine find_ends()
          integer :: node
 
          first = 1
-         allocate (ends(sum(patches%last - patches%first + 2)), steps(sum(patches%last - patches%first + 2)))
+         allocate (ends(sum(patches%last - patches%first + 2)))
          do i = 1, size(patches)
-            associate (from => patches(i)%first, to => patches(i)%last, tau => state%fields%shear)
+            associate (from => patches(i)%first, to => patches(i)%last)
                first(i + 1) = first(i) + to - from + 2
                ends(first(i):first(i + 1) - 1) = [model%arc(from) - 0.5_wp*model%width(from), &
                                                   (model%arc(node) + 0.5_wp*model%width(node), node=from, to)]
-               steps(first(i):first(i + 1) - 1) = [-tau(from), (tau(node) - tau(node + 1), node=from, to - 1), tau(to)]
             end associate
          end do
-      end subroutine find_steps
+      end subroutine find_ends
 
-      !> Integral of tau/(t - x) dt over the intervals of some ends, with constant tau in each.
-      pure real(wp) function integral_over(from, to, x)
+      !> 1/pi integrals of a `traction` over t - x dt at the samples.
+      function integrals_of(traction) result(integrals)
+         real(wp), intent(in) :: traction(:)
+         real(wp) :: integrals(size(samples%arc)), steps(size(ends))
+         integer :: node
+
+         ! Steps down at the ends.
+         do i = 1, size(patches)
+            associate (from => patches(i)%first, to => patches(i)%last)
+               steps(first(i):first(i + 1) - 1) = [-traction(from), (traction(node) - traction(node + 1), node=from, to - 1), &
+                                                   traction(to)]
+            end associate
+         end do
+         integrals = [(integral_over(steps, 1, size(ends), model%arc(nodes(i))), i=1, size(nodes)), &
+                      (integral_at_edge(traction, steps, -1, i), i=1, size(patches)), &
+                      (integral_at_edge(traction, steps, 1, i), i=1, size(patches))]/pi
+      end function integrals_of
+
+      !> Integral of a traction over t - x dt over the intervals of some ends, with a constant traction in each.
+      pure real(wp) function integral_over(steps, from, to, x)
+         real(wp), intent(in) :: steps(:)
          integer, intent(in) :: from, to
          real(wp), intent(in) :: x
 
@@ -335,7 +359,8 @@ contains
 
       !> The same over all patches at the left (-1) or right edge of one. In that patch t = c - a cos(angle): the integral over t
       !> of the root is a^2/2 (angle - sin cos), that of the root over t - x is a (sin - side angle).
-      pure real(wp) function integral_at_edge(side, number) result(integral)
+      pure real(wp) function integral_at_edge(traction, steps, side, number) result(integral)
+         real(wp), intent(in) :: traction(:), steps(:)
          integer, intent(in) :: side, number
          real(wp) :: half, edge, angle(patches(number)%first:patches(number)%last + 1)
          real(wp) :: root(patches(number)%first:patches(number)%last)
@@ -343,14 +368,14 @@ contains
          associate (patch => patches(number))
             half = 0.5_wp*patch%length()
             edge = merge(patch%right, patch%left, side > 0)
-            integral = integral_over(1, first(number) - 1, edge) + integral_over(first(number + 1), size(ends), edge)
+            integral = integral_over(steps, 1, first(number) - 1, edge) + integral_over(steps, first(number + 1), size(ends), edge)
             if (.not. half > 0.0_wp) return
             associate (from => patch%first, to => patch%last)
                angle(from) = 0.0_wp
                angle(from + 1:to) = acos(max(-1.0_wp, min(1.0_wp, (patch%left + half - model%arc(from + 1:to) &
                                                                    + 0.5_wp*model%width(from + 1:to))/half)))
                angle(to + 1) = pi
-             associate (a => angle(from:to), b => angle(from + 1:to + 1), force => state%fields%shear(from:to)*model%width(from:to))
+             associate (a => angle(from:to), b => angle(from + 1:to + 1), force => traction(from:to)*model%width(from:to))
                   root = 0.5_wp*half*(b - a - sin(b)*cos(b) + sin(a)*cos(a))
                   where (root > 0.0_wp) root = force/root*(sin(b) - sin(a) - side*(b - a))
                end associate
@@ -361,7 +386,7 @@ contains
    end subroutine sample_surface
 
    !> Estimate of the largest von Mises stress of a body, force/length^2: at the samples, and below each patch under line loads at
-   !> the nodes (Flamant: Johnson 1985, section 2.3). `stress`: sigma_xx at the samples.
+   !> the nodes. `stress`: sigma_xx at the samples.
    real(wp) function largest_von_mises(model, state, patches, samples, stress, body, side, bulk) result(largest)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
@@ -373,25 +398,23 @@ contains
       integer, parameter :: across = 12
       !> Depths over the half-width, up to that of the largest stress under an ellipse of pressure.
       real(wp), parameter :: depths(6) = [0.1_wp, 0.2_wp, 0.3_wp, 0.4_wp, 0.55_wp, 0.7_wp]
-      real(wp), dimension(model%nodes()) :: place, square, radial
-      real(wp) :: sign, out_of_plane, depth
+      real(wp) :: sign, depth, below(3)
       integer :: i, j, k
 
       sign = merge(1.0_wp, -1.0_wp, side == 1)
-      out_of_plane = 0.0_wp
-      if (model%scene%plane == plane_strain) out_of_plane = body%elasticity%material%poisson_ratio
       largest = of_components(bulk, 0.0_wp, 0.0_wp)
       do i = 1, size(samples%arc)
-         largest = max(largest, of_components(stress(i), -samples%pressure(i), samples%shear(i)))
+         largest = max(largest, of_components(stress(i), -samples%pressure(i), sign*samples%shear(i)))
       end do
       do i = 1, size(patches)
          do k = 1, size(depths)
             depth = 0.5_wp*depths(k)*patches(i)%length()
             do j = 1, across
-               place = patches(i)%left + patches(i)%length()*(j - 0.5_wp)/across - model%arc
-               square = place**2 + depth**2
-               radial = -2.0_wp/pi*model%width*(state%fields%pressure*depth + sign*state%fields%shear*place)/square**2
-               largest = max(largest, of_components(bulk + sum(radial*place**2), depth**2*sum(radial), depth*sum(radial*place)))
+               associate (place => patches(i)%left + patches(i)%length()*(j - 0.5_wp)/across)
+                  below = line_load_stress(body%elasticity%material, model%arc - place, depth, model%width*state%fields%pressure, &
+                                           sign*model%width*state%fields%shear)
+               end associate
+               largest = max(largest, of_components(bulk + below(1), below(2), below(3)))
             end do
          end do
       end do
@@ -401,7 +424,7 @@ contains
       pure real(wp) function of_components(xx, yy, xy)
          real(wp), intent(in) :: xx, yy, xy
 
-         of_components = von_mises_stress([xx, yy, xy, out_of_plane*(xx + yy)])
+         of_components = von_mises_stress([xx, yy, xy, body%elasticity%material%stress_out_of_plane([xx, yy, xy])])
       end function of_components
    end function largest_von_mises
 

@@ -13,6 +13,7 @@ module mfv_slip_zones
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: pi, wp
    use mfv_motions, only: motion_count, motion_approach, motion_shift
+   use mfv_near_field, only: near_field_type
    use mfv_node_status, only: holds, in_contact, motion_sign, node_frictionless, slip_sign
    use mfv_reference_spence, only: spence_stick_ratio
    use mfv_strings, only: to_text
@@ -154,14 +155,16 @@ contains
       type(contact_state_type), intent(in) :: state
       integer, intent(in) :: side
       integer, parameter :: first = 2, last = 4
-      !> Dundurs' beta of bodies that hardly differ.
+      !> Coupling of bodies that hardly differ.
       real(wp), parameter :: similar = 0.01_wp
+      type(near_field_type) :: pair
       type(zone_edges_type) :: edges
       real(wp), dimension(first:last) :: distance, times_ratio
       integer :: edge, node(0:last), i
 
       width = 0.0_wp
-      if (model%scene%coupling == coupling_full .and. abs(model%scene%beta()) > similar) return
+      pair = model%scene%near_field()
+      if (model%scene%coupling == coupling_full .and. pair%coupling_ratio() > similar) return
       edge = findloc(in_contact(state%status), .true., dim=1, back=side > 0)
       node = [(edge - side*i, i=0, last)]
       if (minval(node) < 1 .or. maxval(node) > size(state%status)) return
@@ -305,14 +308,16 @@ contains
 
       !> With coupling, pressing with friction always causes slip next to the edge (Spence 1973).
       subroutine add_pressing
+         type(near_field_type) :: pair
          real(wp) :: ratio, half_width
 
          if (.not. model%compliance%has_block(block_up) .or. .not. model%scene%modulus() > 0.0_wp) return
          half_width = 0.5_wp*sum(model%width(first:last))
-         ratio = spence_stick_ratio(model%scene%friction%static%largest(), model%scene%beta())
+         pair = model%scene%near_field()
+         ratio = spence_stick_ratio(sqrt(pair%shear_ratio())*model%scene%friction%static%largest(), model%scene%beta())
          width = half_width*(1.0_wp - ratio)
          if (width > negligible_pressing*half_width .and. width <= widest_hidden*contact_interval(model, state)) &
-            missing = model%scene%friction%static%largest()**2/model%scene%modulus()*state%fields%force(motion_approach)**2 &
+            missing = model%scene%friction%static%largest()**2*pair%tangential*state%fields%force(motion_approach)**2 &
                       *(width/half_width)**3
          if (.not. missing > 0.0_wp) width = 0.0_wp
       end subroutine add_pressing
@@ -374,7 +379,7 @@ contains
          width = 0.0_wp
          return
       end if
-      work = pi*slope*width**3/(24.0_wp*room_number*model%compliance%modulus)
+      work = pi*slope*width**3/(24.0_wp*room_number*model%compliance%modulus)*model%compliance%shear_ratio
    end subroutine hidden_at_edge
 
    !> Record of the segments since another record of the same run.

@@ -18,6 +18,7 @@ module mfv_zone_edges
    use mfv_edge_solutions, only: graded_solution_type, least_power, most_power, new_graded_solution, find_solved_distance
    use mfv_kinds, only: pi, wp
    use mfv_motions, only: bulk_motions, control_keep, motion_approach, motion_rotation, motion_shift
+   use mfv_near_field, only: near_field_type
    use mfv_node_status, only: holds, in_contact, slip_sign, slips
    use mfv_surface_tractions, only: root_shift
    use mfv_tolerances, only: certified, significant, visible
@@ -681,13 +682,13 @@ contains
       type(contact_model_type), intent(in) :: model
       integer, intent(in) :: node
       real(wp), intent(in) :: ratio
-      real(wp) :: beta
+      type(near_field_type) :: pair
 
       exponent_shift = 0.0_wp
       if (.not. model%compliance%elastic_block(block_wt)) return
-      beta = model%scene%beta()
-      if (model%scene%lower%is_matrix()) beta = local_beta(model, node)
-      exponent_shift = root_shift(beta*ratio)
+      pair = model%scene%near_field()
+      exponent_shift = root_shift(pair%edge_product(ratio))
+      if (model%scene%lower%is_matrix()) exponent_shift = root_shift(local_beta(model, node)*ratio)
    end function exponent_shift
 
    !> Dundurs' beta of bodies given by a matrix, from the entries about a node. Next to a force P, w is -A ln(r) P/pi; next to

@@ -297,8 +297,8 @@ contains
       both = pair_of(self%lower%elasticity%near_field(), self%upper%elasticity%near_field())
    end function near_field
 
-   !> Contact modulus of both bodies, force/length^2: 1/m = 1/m1 + 1/m2 with m = 4 G/(kappa + 1) of each elastic body; A in
-   !> dissertation eq. 6.1, corrected for a misprint, is 1/m. Zero if a body has no material.
+   !> Contact modulus of both bodies, force/length^2: 1/A of mfv_near_field, the sum of those of the elastic bodies, (kappa + 1)/(4 G)
+   !> if isotropic (A in dissertation eq. 6.1, corrected for a misprint). Zero if a body has no material.
    pure real(wp) function modulus(self)
       class(scene_type), intent(in) :: self
       type(near_field_type) :: both
@@ -331,9 +331,10 @@ contains
    end function has_datum
 
    !> Datum of the displacements of both bodies together, length: the mean of the logarithms of their datums, weighted with their
-   !> flexibilities.
-   pure real(wp) function datum(self)
+   !> flexibilities under pressure or, if `by_shear`, under shear.
+   pure real(wp) function datum(self, by_shear)
       class(scene_type), intent(in) :: self
+      logical, intent(in), optional :: by_shear
       real(wp) :: flexibility(2), logarithm(2)
 
       flexibility = [of_body(self%lower), of_body(self%upper)]
@@ -351,6 +352,7 @@ contains
 
          constants = body%elasticity%near_field()
          of_body = constants%normal
+         if (present(by_shear)) of_body = merge(constants%tangential, constants%normal, by_shear)
       end function of_body
    end function datum
 
@@ -457,13 +459,13 @@ contains
          end do
       end do
       zones%contact = ratio*zones%contact
-      if (self%coupling == coupling_full) zones%beta = self%beta()
+      if (self%coupling == coupling_full) zones%pair = self%near_field()
       if (present(fewest_elements)) zones%fewest_elements = fewest_elements
       if (upper) then
-         call new_interior(self%upper, upper, self%plane, self%mesh%radial, ratio*arc, ratio*width, pressure/ratio, &
+         call new_interior(self%upper, upper, self%mesh%radial, ratio*arc, ratio*width, pressure/ratio, &
                            shear/ratio, zones, inside, available)
       else
-         call new_interior(self%lower, upper, self%plane, self%mesh%radial, ratio*arc, ratio*width, pressure/ratio, &
+         call new_interior(self%lower, upper, self%mesh%radial, ratio*arc, ratio*width, pressure/ratio, &
                            shear/ratio, zones, inside, available)
       end if
       inside%bulk = bulk

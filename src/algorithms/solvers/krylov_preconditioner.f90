@@ -9,7 +9,7 @@
 !> inverses for a few values of c. Nodes whose friction decreases with slip (c < 0) are treated as independent: where the bodies
 !> can unload as fast as friction decreases, |c| dominates C_ut + c.
 module mfv_krylov_preconditioner
-   use mfv_compliance, only: block_wp, compliance_type
+   use mfv_compliance, only: block_ut, block_wp, compliance_type
    use mfv_fourier, only: back_transform, fast_length, real_transform
    use mfv_half_plane, only: log_kernel
    use mfv_kinds, only: wp
@@ -30,8 +30,10 @@ module mfv_krylov_preconditioner
       private
       !> Entries by distance, length^3/force in the units of the system.
       real(wp), allocatable :: kernel(:)
-      !> What the entries of the blocks next to the diagonal, and all of those of half-planes, have beyond the kernel.
-      real(wp), public :: constant = 0.0_wp
+      !> C_ut is the kernel times this. What the entries of C_wp and C_ut next to the diagonal, and all of those of half-planes, have
+      !> beyond these.
+      real(wp) :: shear_ratio = 1.0_wp
+      real(wp), public :: constant = 0.0_wp, shear_constant = 0.0_wp
       logical :: is_homogeneous = .false.
       !> (Both allocatable: otherwise gfortran 12 does not free the components of the second.)
       type(block_type), allocatable :: contact, held
@@ -77,6 +79,12 @@ contains
          self%kernel(distance + 1) = (max(near(1, 1), least) - factor*log_kernel(2.0_wp*distance))/unit
       end do
       self%constant = near(1, 1)/unit - self%kernel(1)
+      self%shear_ratio = compliance%shear_ratio
+      self%shear_constant = 0.0_wp
+      if (compliance%has_block(block_ut)) then
+         call compliance%entries(block_ut, [middle], [middle], near(:, 1:1))
+         self%shear_constant = near(1, 1)/unit - self%shear_ratio*self%kernel(1)
+      end if
       self%is_homogeneous = compliance%is_homogeneous
       if (allocated(self%contact)) deallocate (self%contact, self%held)
       allocate (self%contact, self%held)
@@ -106,7 +114,7 @@ contains
       call self%contact%inverse%set_nodes(self%kernel, nodes)
    end subroutine set_contact
 
-   !> Set the nodes whose shear is unknown, ascending, and their softness, shape (held).
+   !> Set the nodes whose shear is unknown, ascending, and their softness, shape (held). (r K + c)^-1 is (K + c/r)^-1/r.
    subroutine set_held(self, nodes, softness)
       class(krylov_preconditioner_type), intent(inout) :: self
       integer, intent(in) :: nodes(:)
@@ -115,7 +123,7 @@ contains
       call place_nodes(self%held, nodes)
       call self%held%inverse%set_nodes(self%kernel, nodes, self%contact%inverse)
       self%soft = any(abs(softness) > 0.0_wp)
-      if (self%soft) call set_levels(self, softness)
+      if (self%soft) call set_levels(self, softness/self%shear_ratio)
    end subroutine set_held
 
    subroutine place_nodes(block, nodes)
@@ -177,8 +185,10 @@ contains
 
       if (.not. self%soft) then
          call self%held%inverse%apply(values)
+         values = values/self%shear_ratio
          return
       end if
+      values = values/self%shear_ratio
       right = values
       ! Independent nodes do not contribute to the displacements of the others.
       where (sum(self%weight, dim=2) <= 0.0_wp) values = 0.0_wp

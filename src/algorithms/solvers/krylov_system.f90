@@ -438,10 +438,8 @@ contains
          m = size(self%contact)
          s = size(self%held)
          call model%compliance%normal_by_shear(self%shear, self%normal)
-         associate (constant => self%preconditioner%constant)
-            rows(:m) = self%stress/self%length*self%normal(self%contact) + constant*sum(unknowns(:m))
-            rows(m + 1:m + s) = constant*sum(unknowns(m + 1:m + s))
-         end associate
+         rows(:m) = self%stress/self%length*self%normal(self%contact) + self%preconditioner%constant*sum(unknowns(:m))
+         rows(m + 1:m + s) = self%preconditioner%shear_constant*sum(unknowns(m + 1:m + s))
          rows(m + s + 1:) = 0.0_wp
       else
          call displace(self, model)

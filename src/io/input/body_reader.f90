@@ -3,11 +3,11 @@ module mfv_body_reader
    use mfv_body, only: body_type, new_body
    use mfv_geometry
    use mfv_circle, only: kernel_fourier
-   use mfv_elasticity, only: as_half_plane, elasticity_half_plane, elasticity_own
+   use mfv_elasticity, only: as_half_plane, elasticity_anisotropic, elasticity_orthotropic, elasticity_own
    use mfv_error, only: error_type
    use mfv_key_reader
    use mfv_kinds, only: pi, wp
-   use mfv_material, only: new_material, shear_modulus_of
+   use mfv_material, only: new_anisotropic_material, new_material, new_orthotropic_material, plane_stress, shear_modulus_of
    use mfv_matrix_file, only: read_matrix_body
    use mfv_profile, only: trace_type
    use mfv_profile_file, only: read_profile
@@ -20,6 +20,11 @@ module mfv_body_reader
 
    !> Clearance of a neat fit, over the radius: a smaller one changes the contact by less than 1e-4 of it.
    real(wp), parameter :: neat_clearance = 1.0e-8_wp
+
+   real(wp), parameter :: degree = pi/180.0_wp
+   !> Keys of an orthotropic material, in the order of new_orthotropic_material; three of them not in plane stress.
+   character(*), parameter :: orthotropic_keys = 'youngs_modulus_1 youngs_modulus_2 poisson_ratio_12 shear_modulus_12'
+   character(*), parameter :: plane_strain_keys = 'youngs_modulus_3 poisson_ratio_13 poisson_ratio_23'
 
 contains
 
@@ -57,7 +62,7 @@ contains
       integer, intent(in) :: body
       type(error_type), allocatable, intent(out) :: error
       type(string_type), allocatable :: keys(:)
-      character(:), allocatable :: shape, allowed
+      character(:), allocatable :: shape, allowed, elasticity
       logical :: rigid
       integer :: i
 
@@ -70,14 +75,13 @@ contains
       allowed = 'shape rigid'
       allowed = allowed//' '//trim(needed_keys(shape))
       if (shape == 'profile') allowed = allowed//' interpolation position_scale height_scale level centred'
-      if (shape /= 'matrix' .and. .not. rigid) allowed = allowed//' shear_modulus youngs_modulus poisson_ratio '// &
-                                                         'yield_strength datum'
-      if ((shape == 'disk' .or. shape == 'hole') .and. .not. rigid) then
-         allowed = allowed//' elasticity'
-         if (reader%choice('body', body, 'elasticity') == elasticity_own) then
+      if (shape /= 'matrix' .and. .not. rigid) then
+         elasticity = reader%text_value('body', body, 'elasticity')
+         allowed = allowed//' elasticity yield_strength datum '//trim(material_keys(reader%choice('body', body, 'elasticity')))
+         if (elasticity /= 'own') then
+            shape = shape//" with elasticity='"//elasticity//"'"
+         else if (shape == 'disk' .or. shape == 'hole') then
             allowed = allowed//' kernel harmonics'
-         else
-            shape = shape//" with elasticity='half_plane'"
          end if
       end if
       keys = reader%catalogue%names('body')
@@ -88,6 +92,21 @@ contains
          return
       end do
    end subroutine check_body_keys
+
+   !> The keys of a material for a choice of elasticity, separated by blanks; padded with blanks.
+   pure function material_keys(elasticity) result(keys)
+      integer, intent(in) :: elasticity
+      character(len=160) :: keys
+
+      select case (elasticity)
+      case (elasticity_orthotropic)
+         keys = orthotropic_keys//' '//plane_strain_keys//' axis_angle'
+      case (elasticity_anisotropic)
+         keys = 'compliances axis_angle'
+      case default
+         keys = 'shear_modulus youngs_modulus poisson_ratio'
+      end select
+   end function material_keys
 
    !> The keys that a shape needs, separated by blanks; padded with blanks.
    pure function needed_keys(shape) result(keys)
@@ -123,9 +142,16 @@ contains
       if (allocated(error)) return
       body%rigid = reader%logical_value('body', number, 'rigid')
       if (body%rigid .or. body%is_matrix()) return
-      call read_material(reader, number, plane, body, error)
+      select case (reader%choice('body', number, 'elasticity'))
+      case (elasticity_orthotropic)
+         call read_orthotropic(reader, number, plane, body, error)
+      case (elasticity_anisotropic)
+         call read_anisotropic(reader, number, plane, body, error)
+      case default
+         call read_material(reader, number, plane, body, error)
+      end select
       if (allocated(error)) return
-      if (reader%choice('body', number, 'elasticity') == elasticity_half_plane) body%elasticity%kind = as_half_plane
+      if (reader%choice('body', number, 'elasticity') /= elasticity_own) body%elasticity%kind = as_half_plane
       body%yield_strength = reader%real_value('body', number, 'yield_strength')
       body%elasticity%kernel = reader%choice('body', number, 'kernel')
       body%elasticity%harmonics = reader%integer_value('body', number, 'harmonics')
@@ -140,7 +166,6 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: shape
       type(string_type), allocatable :: needed(:)
-      real(wp), parameter :: degree = pi/180.0_wp
       integer :: i
 
       shape = reader%text_value('body', number, 'shape')
@@ -225,7 +250,76 @@ contains
          call reader%complain('body', number, 'height_scale', 'must not be 0', error)
    end subroutine read_trace
 
-   !> The elastic material.
+   !> An orthotropic material. That of the upper body is seen from below, as its mirror image.
+   subroutine read_orthotropic(reader, number, plane, body, error)
+      type(reader_type), intent(in) :: reader
+      integer, intent(in) :: number, plane
+      type(body_type), intent(inout) :: body
+      type(error_type), allocatable, intent(out) :: error
+      type(string_type), allocatable :: keys(:)
+      logical :: valid
+      integer :: i
+
+      keys = list_of_words(trim(merge(orthotropic_keys//' '//plane_strain_keys, &
+                                      orthotropic_keys//repeat(' ', len(plane_strain_keys) + 1), plane /= plane_stress)))
+      do i = 1, size(keys)
+         call reader%need('body', number, keys(i)%text, error)
+         if (allocated(error)) return
+      end do
+      keys = list_of_words(plane_strain_keys)
+      do i = 1, size(keys)
+         if (plane /= plane_stress .or. .not. reader%has('body', number, keys(i)%text)) cycle
+         call reader%complain('body', number, keys(i)%text, "has no effect with plane='stress' in &scene; remove it", error)
+         return
+      end do
+      call new_orthotropic_material([value('youngs_modulus_1'), value('youngs_modulus_2'), value('youngs_modulus_3')], &
+                                    [value('poisson_ratio_12'), value('poisson_ratio_13'), value('poisson_ratio_23')], &
+                                    value('shear_modulus_12'), plane, degree*value('axis_angle'), body%elasticity%material, valid)
+      if (.not. valid) call reader%complain('body', number, 'poisson_ratio_12', 'no such material: some stress would release '// &
+                                            'energy; the squares of nu12, nu13 and nu23 must be below E1/E2, E1/E3 and E2/E3, '// &
+                                            'and smaller if all are large', error)
+      if (number == 2) body%elasticity%material = body%elasticity%material%mirrored()
+
+   contains
+
+      !> 0 where it has no effect.
+      pure real(wp) function value(name)
+         character(*), intent(in) :: name
+
+         value = 0.0_wp
+         if (plane == plane_stress .and. has_word(plane_strain_keys, name)) return
+         value = reader%real_value('body', number, name)
+      end function value
+   end subroutine read_orthotropic
+
+   !> A material with any compliances in the plane. That of the upper body is seen from below, as its mirror image.
+   subroutine read_anisotropic(reader, number, plane, body, error)
+      type(reader_type), intent(in) :: reader
+      integer, intent(in) :: number, plane
+      type(body_type), intent(inout) :: body
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), allocatable :: compliances(:)
+      logical :: valid
+
+      call reader%need('body', number, 'compliances', error)
+      if (allocated(error)) return
+      call reader%real_values('body', number, 'compliances', compliances)
+      if (plane == plane_stress .and. size(compliances) /= 6) then
+         call reader%complain('body', number, 'compliances', 'must be six numbers in plane stress: S11, S12, S22, S16, S26, S66', &
+                              error)
+      else if (plane /= plane_stress .and. size(compliances) /= 10) then
+         call reader%complain('body', number, 'compliances', 'must be ten numbers in plane strain: S11, S12, S22, S16, S26, '// &
+                              'S66, S13, S23, S33, S36', error)
+      end if
+      if (allocated(error)) return
+      call new_anisotropic_material(compliances, degree*reader%real_value('body', number, 'axis_angle'), &
+                                    body%elasticity%material, valid)
+      if (.not. valid) call reader%complain('body', number, 'compliances', 'no such material: some stress would release '// &
+                                            'energy; the matrix of the compliances must be positive definite', error)
+      if (number == 2) body%elasticity%material = body%elasticity%material%mirrored()
+   end subroutine read_anisotropic
+
+   !> The elastic material, isotropic.
    subroutine read_material(reader, number, plane, body, error)
       type(reader_type), intent(in) :: reader
       integer, intent(in) :: number, plane

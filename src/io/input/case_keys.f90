@@ -81,7 +81,9 @@ contains
       call keys%add('body', 'exponent', kind_real, 'power: exponent of the shape, needed; 1: a wedge, 2: a cylinder', &
                     lower=1.0_wp, upper=100.0_wp)
       call keys%add('body', 'elasticity', kind_choice, 'how the surface deforms: a disk or hole as such by default, or as a '// &
-                    'half-plane, as all other shapes do', default='own', choices=elasticity_names)
+                    'half-plane, as all other shapes do; orthotropic, anisotropic: as a half-plane of such a material', &
+                    default='own', choices=elasticity_names)
+      call add_anisotropic_keys(keys)
       call keys%add('body', 'kernel', kind_choice, 'elastic disk, hole: closed forms, or the Fourier series', default='exact', &
                     choices='exact fourier')
       call keys%add('body', 'harmonics', kind_integer, "kernel='fourier': terms of the series; if omitted: 4 per "// &
@@ -101,6 +103,31 @@ contains
       call keys%add('body', 'centred', kind_logical, 'profile: whether the middle of its positions is moved to x = 0', &
                     default='.false.')
    end subroutine add_body_keys
+
+   subroutine add_anisotropic_keys(keys)
+      type(catalogue_type), intent(inout) :: keys
+      character(*), parameter :: strain = ', needed in plane strain'
+
+      call keys%add('body', 'youngs_modulus_1', kind_real, 'orthotropic: modulus along the first axis, needed', &
+                    unit='force/length^2', above=0.0_wp)
+      call keys%add('body', 'youngs_modulus_2', kind_real, 'orthotropic: modulus along the second axis, in the plane, needed', &
+                    unit='force/length^2', above=0.0_wp)
+      call keys%add('body', 'youngs_modulus_3', kind_real, 'orthotropic: modulus out of the plane'//strain, &
+                    unit='force/length^2', above=0.0_wp)
+      call keys%add('body', 'poisson_ratio_12', kind_real, 'orthotropic: contraction along axis 2 over extension along axis 1, '// &
+                    'under a stress along axis 1, needed')
+      call keys%add('body', 'poisson_ratio_13', kind_real, 'orthotropic: the same of axes 3 and 1, under a stress along axis 1'// &
+                    strain)
+      call keys%add('body', 'poisson_ratio_23', kind_real, 'orthotropic: the same of axes 3 and 2, under a stress along axis 2'// &
+                    strain)
+      call keys%add('body', 'shear_modulus_12', kind_real, 'orthotropic: shear modulus in the plane, needed', &
+                    unit='force/length^2', above=0.0_wp)
+      call keys%add('body', 'compliances', kind_real, 'anisotropic: S11, S12, S22, S16, S26, S66 and, in plane strain, '// &
+                    'S13, S23, S33, S36, needed: strains (11, 22, engineering 12) by stresses', unit='length^2/force')
+      keys%keys(keys%size)%is_list = .true.
+      call keys%add('body', 'axis_angle', kind_real, 'orthotropic, anisotropic: angle from x to the first axis of the '// &
+                    'material, counterclockwise', unit='degrees', default='0', lower=-180.0_wp, upper=180.0_wp)
+   end subroutine add_anisotropic_keys
 
    subroutine add_mesh_keys(keys)
       type(catalogue_type), intent(inout) :: keys

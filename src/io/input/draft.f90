@@ -262,7 +262,10 @@ contains
          if (allocated(fault)) fault%message = quoted(dundurs_key)//': '//fault%message
       end if
       if (.not. allocated(fault)) then
-         if (case%scene%modulus() > 0.0_wp) then
+         if (any(.not. [case%scene%lower%rigid .or. case%scene%lower%elasticity%material%is_isotropic(), &
+                        case%scene%upper%rigid .or. case%scene%upper%elasticity%material%is_isotropic()])) then
+            call set_error(fault, MFV_INPUT_ERROR, dundurs_key//' needs isotropic bodies')
+         else if (case%scene%modulus() > 0.0_wp) then
             call self%write_materials(flexibilities(beta, 1.0_wp/case%scene%modulus()))
          else
             call set_error(fault, MFV_INPUT_ERROR, dundurs_key//" needs bodies with materials, not shape='matrix'")
@@ -287,7 +290,7 @@ contains
             call self%set(groups(body)//'shear_modulus', 1.0_wp/flexibility(body))
             call self%set(groups(body)//'poisson_ratio', 0.0_wp)
          else
-            call remove_keys(self%groups(place), 'yield_strength datum kernel harmonics')
+            call remove_keys(self%groups(place), 'yield_strength datum elasticity kernel harmonics')
             call self%set(groups(body)//'rigid', .true.)
          end if
       end do

@@ -15,8 +15,9 @@ module mfv_result_fields
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
    use mfv_load_extremes, only: candidate_tension, extreme_type
-   use mfv_material, only: plane_names
+   use mfv_material, only: material_type, plane_names
    use mfv_motions, only: motions, motion_count => user_motions, motion_approach, motion_shift, motion_rotation, bulk_motions
+   use mfv_near_field, only: near_field_type
    use mfv_node_status, only: event_names, in_contact, node_status_names
    use mfv_observables, only: observable_count, observable_place, observables, observables_of
    use mfv_resolution, only: find_unresolved_observables
@@ -265,15 +266,22 @@ contains
    subroutine add_scene(list, simulation)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
+      type(near_field_type) :: pair
 
       associate (scene => simulation%contact%model%scene)
          call add_body(list, 'lower', scene%lower)
          call add_body(list, 'upper', scene%upper)
          if (scene%modulus() > 0.0_wp) then
             call list%add('contact_modulus', scene%modulus(), 'force/length^2', 'modulus m of both bodies, 1/m = sum of '// &
-                          '(kappa + 1)/(4 G)')
+                          '(kappa + 1)/(4 G); of anisotropic bodies that under pressure')
             call list%add('dundurs_beta', scene%beta(), '1', "Dundurs' parameter beta, positive if the lower body "// &
                           "couples more strongly")
+            pair = scene%near_field()
+            if (is_anisotropic(scene%lower) .or. is_anisotropic(scene%upper)) then
+               call list%add('contact_shear_modulus', scene%modulus()/pair%shear_ratio(), 'force/length^2', 'the same under shear')
+               call list%add('contact_mixed_ratio', pair%mixed/pair%normal, '1', 'compliance between pressure and shear over '// &
+                             'that under pressure, of oblique anisotropic bodies')
+            end if
          end if
          call list%add('curvature', scene%curvature(), '1/length', 'relative curvature of disks and holes at the origin')
          call list%add('friction_coefficient', scene%friction%static%largest(), '1', 'largest (static) coefficient of '// &
@@ -281,18 +289,39 @@ contains
       end associate
    end subroutine add_scene
 
+   !> Whether a body has a material that is not isotropic.
+   pure logical function is_anisotropic(body)
+      type(body_type), intent(in) :: body
+
+      associate (material => body%elasticity%material)
+         is_anisotropic = material%exists() .and. .not. material%is_isotropic()
+      end associate
+   end function is_anisotropic
+
    !> What is known of one body.
    subroutine add_body(list, name, body)
       type(list_type), intent(inout) :: list
       character(*), intent(in) :: name
       type(body_type), intent(in) :: body
+      character(*), parameter :: places(6) = ['11', '12', '22', '16', '26', '66']
+      type(material_type) :: seen
+      integer :: i
 
       if (body%circular()) call list%add(name//'_radius', body%radius, 'length', 'radius of the '//name//' body')
       associate (elasticity => body%elasticity, material => body%elasticity%material)
-         if (.not. material%shear_modulus > 0.0_wp) return
-         call list%add(name//'_shear_modulus', material%shear_modulus, 'force/length^2', 'shear modulus of the '//name//' body')
-         call list%add(name//'_poisson_ratio', material%poisson_ratio, '1', "Poisson's ratio of the "//name//' body')
-         call list%add(name//'_kolosov_constant', material%kolosov, '1', "Kolosov's constant of the "//name//' body')
+         if (.not. material%exists()) return
+         if (material%is_isotropic()) then
+            call list%add(name//'_shear_modulus', material%shear_modulus, 'force/length^2', 'shear modulus of the '//name//' body')
+            call list%add(name//'_poisson_ratio', material%poisson_ratio, '1', "Poisson's ratio of the "//name//' body')
+            call list%add(name//'_kolosov_constant', material%kolosov, '1', "Kolosov's constant of the "//name//' body')
+         else
+            seen = material
+            if (name == 'upper') seen = material%mirrored()
+            do i = 1, size(places)
+               call list%add(name//'_compliance_'//places(i), seen%compliance(i), 'length^2/force', 'compliance s'//places(i)// &
+                             ' of the '//name//' body along x and y, in its plane state')
+            end do
+         end if
          call list%add(name//'_datum', elasticity%datum, 'length', 'distance from the origin at which displacements of the '// &
                        name//' body are measured')
          call list%add(name//'_datum_of_case', merge(1, 0, elasticity%datum_of_case), 'whether this is a default that depends '// &
