@@ -11,6 +11,10 @@ import numpy as np
 from .problem import Keys, Problem
 
 
+#: From this seed on some bodies are anisotropic; the numbers of smaller seeds do not change.
+ANISOTROPIC = 200_000
+
+
 class Draw:
     """Random numbers of a seed."""
 
@@ -56,7 +60,7 @@ def problem(seed: int) -> Problem:
     if draw.chance(0.25):
         scene["plane"] = "stress"
     scene["coupling"] = draw.one_of(full=0.5, goodman=0.25, none=0.25)
-    _add_bodies(draw, made, sizes)
+    _add_bodies(draw, made, sizes, Draw(seed + 2**32) if seed >= ANISOTROPIC else None)
     law = _add_friction(draw, made, sizes)
     loads = _add_loads(draw, made, sizes, law)
     mesh = _add_mesh(draw, made, sizes, law, loads)
@@ -73,16 +77,62 @@ def _material(draw: Draw) -> Keys:
     return {"shear_modulus": draw.power(-2, 5), "poisson_ratio": ratio}
 
 
-def _compliance(body: Keys, plane: str) -> float:
+def _make_anisotropic(draw: Draw, body: Keys, plane: str) -> None:
+    """Give an isotropic body an orthotropic or anisotropic material of about its stiffness."""
+    shear = body.pop("shear_modulus")
+    body.pop("poisson_ratio")
+    body["axis_angle"] = draw.between(-90, 90) if draw.chance(0.7) else 0.0
+    moduli = [2.6 * shear * draw.power(-0.6, 0.6) for _ in range(3)]
+    ratios = [draw.between(-0.2, 0.45) * math.sqrt(moduli[i] / moduli[j]) for i, j in ((0, 1), (0, 2), (1, 2))]
+    shear *= draw.power(-0.4, 0.4)
+    if draw.chance(0.7):
+        body["elasticity"] = "orthotropic"
+        body.update({f"youngs_modulus_{i + 1}": modulus for i, modulus in enumerate(moduli) if i < 2 or plane == "strain"})
+        body.update({f"poisson_ratio_{name}": ratios[i] for i, name in enumerate(("12", "13", "23")) if i < 1 or plane == "strain"})
+        body["shear_modulus_12"] = shear
+        return
+    body["elasticity"] = "anisotropic"
+    in_plane = [1 / moduli[0], -ratios[0] / moduli[0], 1 / moduli[1]]
+    skew = [draw.between(-0.5, 0.5) * math.sqrt(modulus / shear) for modulus in (in_plane[0], in_plane[2])]
+    body["compliances"] = [*in_plane, *skew, 1 / shear]
+    if plane == "strain":
+        body["compliances"] += [-ratios[1] / moduli[0], -ratios[2] / moduli[1], 1 / moduli[2], 0.0]
+
+
+def _anisotropic_compliance(body: Keys, plane: str) -> float:
+    """The compliance A of the surface of an anisotropic body under pressure, length^2/force (docs/theory.md)."""
+    if body["elasticity"] == "orthotropic":
+        e1, e2, nu12, g12 = (body[key] for key in ("youngs_modulus_1", "youngs_modulus_2", "poisson_ratio_12", "shear_modulus_12"))
+        s = np.array([[1 / e1, -nu12 / e1, 0], [-nu12 / e1, 1 / e2, 0], [0, 0, 1 / g12]])
+        if plane == "strain":
+            out = np.array([-body["poisson_ratio_13"] / e1, -body["poisson_ratio_23"] / e2, 0])
+            s -= np.outer(out, out) * body["youngs_modulus_3"]
+    else:
+        s11, s12, s22, s16, s26, s66 = body["compliances"][:6]
+        s = np.array([[s11, s12, s16], [s12, s22, s26], [s16, s26, s66]])
+        if plane == "strain":
+            s13, s23, s33, s36 = body["compliances"][6:]
+            s -= np.outer([s13, s23, s36], [s13, s23, s36]) / s33
+    c, q = math.cos(math.radians(body["axis_angle"])), math.sin(math.radians(body["axis_angle"]))
+    stress = np.array([[c * c, q * q, 2 * q * c], [q * q, c * c, -2 * q * c], [-q * c, q * c, c * c - q * q]])
+    s = stress.T @ s @ stress
+    roots = np.roots([s[0, 0], -2 * s[0, 2], 2 * s[0, 1] + s[2, 2], -2 * s[1, 2], s[1, 1]])
+    return float(-s[1, 1] * np.sum(1 / roots[roots.imag > 0]).imag)
+
+
+def compliance(body: Keys, plane: str) -> float:
     """(kappa + 1)/(4 G), length^2/force."""
     if body.get("rigid"):
         return 0.0
+    if "axis_angle" in body:
+        return _anisotropic_compliance(body, plane)
     nu = body["poisson_ratio"]
     kappa = (3 - nu) / (1 + nu) if plane == "stress" else 3 - 4 * nu
     return (kappa + 1) / (4 * body["shear_modulus"])
 
 
-def _add_bodies(draw: Draw, made: Problem, sizes: Sizes) -> None:
+def _add_bodies(draw: Draw, made: Problem, sizes: Sizes, anisotropy: Draw | None) -> None:
+    """The bodies; with a draw for their `anisotropy` some are anisotropic half-planes."""
     kind = draw.one_of(cylinder=20, disks=8, hole=7, pin=3, power=10, wedge=7, rounded=12, flat=6, profile=22)
     radius, share = draw.power(-3, 3), draw.power(-2.0, -1.0)
     a = sizes.half_width = radius * share
@@ -125,7 +175,13 @@ def _add_bodies(draw: Draw, made: Problem, sizes: Sizes) -> None:
         else:
             body.update(alike or _material(draw))
     plane = made.one("scene").get("plane", "strain")
-    sizes.modulus = 2 / sum(_compliance(body, plane) for body in bodies)
+    if anisotropy and kind != "pin":
+        # Two bodies of one material keep it, along the same axes or not.
+        made_of = anisotropy.whole(0, 2**30)
+        for body in bodies:
+            if not body.get("rigid") and anisotropy.chance(0.7):
+                _make_anisotropic(Draw(made_of) if alike else anisotropy, body, plane)
+    sizes.modulus = 2 / sum(compliance(body, plane) for body in bodies)
     angles = (np.arange(400) + 0.5) * np.pi / 800
     sizes.force = float(sizes.modulus * np.mean(slope(a * np.sin(angles)) * a * np.sin(angles)) * np.pi / 2)
     if kind == "profile":

@@ -28,7 +28,8 @@ TURNED_LOADS = ("moment", "rotation")
 DIMENSIONS = {
     "radius": (1, 0), "half_width": (1, 0), "edge_radius": (1, 0), "datum": (1, 0), "ends": (1, 0), "approach": (1, 0),
     "shift": (1, 0), "weakening_distance": (1, 0), "x": (1, 0), "height": (1, 0),
-    "shear_modulus": (-2, 1), "youngs_modulus": (-2, 1), "yield_strength": (-2, 1), "stiffness": (-3, 1),
+    "shear_modulus": (-2, 1), "youngs_modulus": (-2, 1), "youngs_modulus_1": (-2, 1), "youngs_modulus_2": (-2, 1),
+    "youngs_modulus_3": (-2, 1), "shear_modulus_12": (-2, 1), "compliances": (2, -1), "yield_strength": (-2, 1), "stiffness": (-3, 1),
     "normal_force": (-1, 1), "tangential_force": (-1, 1), "moment": (0, 1), "lower_bulk_stress": (-2, 1), "upper_bulk_stress": (-2, 1),
 }  # fmt: skip
 #: Of meshes that are made from edges, which round-off moves; of laws that are integrated with a tolerance.
@@ -65,6 +66,12 @@ def mirror_image(problem: Problem) -> Problem:
     made = problem.copy()
     _reflect(made)
     _change_signs(made, ODD_LOADS)
+    for body in made.all("body"):
+        if "axis_angle" in body:
+            body["axis_angle"] = -body["axis_angle"]
+        if "compliances" in body:
+            odd = (3, 4, 9)
+            body["compliances"] = [-value if place in odd else value for place, value in enumerate(body["compliances"])]
     return made
 
 

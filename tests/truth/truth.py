@@ -14,6 +14,7 @@ import numpy as np
 import mfv
 from mfv import reference
 
+from .generate import compliance
 from .problem import Problem
 
 #: How much finer the meshes of the truth are. One more interval on the second: a tip or corner lies at a node, or between nodes.
@@ -117,10 +118,9 @@ def closed_forms(problem: Problem) -> dict[str, float]:
     if form is None or loads is None:
         return {}
     elastic = next(body for body in problem.all("body") if not body.get("rigid"))
-    nu = elastic["poisson_ratio"]
-    kappa = (3 - nu) / (1 + nu) if problem.one("scene").get("plane") == "stress" else 3 - 4 * nu
     normal, tangential, mu = loads
-    half_width = float(form.half_width(normal, elastic["shear_modulus"], kappa))
+    # Only (kappa + 1)/(4 G) matters.
+    half_width = float(form.half_width(normal, 1.0 / compliance(elastic, problem.one("scene").get("plane", "strain")), 3.0))
     found = {"observables/contact_half_width": half_width, "summary/contact_half_width": half_width}
     if form.peak:
         found["observables/peak_pressure"] = float(form.peak(normal, half_width))
