@@ -312,6 +312,11 @@ int mfv_write(mfv_case *handle, const char *path);
  *   "power_stick_ratio" {Q, P, mu, n}, "power_shear" {x, Q, P, a, mu, n}
  *   "rounded_punch_half_width" {P, b, R, G, kappa}, "rounded_punch_approach" {a, b, R, d}, "rounded_punch_pressure" {x, P, a, b}
  *   "rounded_punch_stick_ratio" {Q, P, mu, a, b}, "rounded_punch_shear" {x, Q, P, a, mu, b}
+ * Constants of an anisotropic half-plane below its surface, with the compliances s11, s12, s22, s16, s26, s66 along x and y
+ * [length^2/force], by number: 1: A (w by P), 2: At (u by Q), 3: M (between them), 4: B (coupling), docs/theory.md. Two half-planes of
+ * one such material in one direction, one with a gap x^2/(2R), pressed without shear, then sheared: m = 1/A, k = M/A of both.
+ *   "surface_compliance" {s11, s12, s22, s16, s26, s66, number}
+ *   "oblique_half_width" {P, Q, R, m, k}, "oblique_stick_ratio" {Q, P, mu, k} (since 0.10.0)
  * Pin in a bore of one material in plane strain, without friction (Persson): force at which the contact reaches half_angle
  * [radians] to either side; clearance: by how much the bore's radius is larger. NaN beyond about 85 degrees. Contact arc
  * 2a/R [radians] of a disk on a rigid plane, plane strain, without friction, at which it yields (Table 4.1).

@@ -216,3 +216,25 @@ def persson_force(half_angle: Number, clearance: Number, youngs_modulus: Number,
 @_closed_form
 def yield_contact_arc(youngs_modulus: Number, poisson_ratio: Number, yield_strength: Number) -> Array:
     """Contact arc 2a/R (radians) at which a cylinder pressed on a rigid plane without friction yields, plane strain."""
+
+
+@_closed_form
+def surface_compliance(s11: Number, s12: Number, s22: Number, s16: Number, s26: Number, s66: Number, number: Number) -> Array:
+    """A constant of an anisotropic half-plane below its surface [length^2/force], from its reduced compliances along x and y.
+
+    `number` 1: A (normal displacement by pressure), 2: At (tangential by shear), 3: M (between them), 4: B (coupling). Forms that take
+    `shear_modulus` and `kolosov_constant` hold for such a body under pressure with 1/A and 3.
+    """
+
+
+@_closed_form
+def oblique_half_width(normal_force: Number, tangential_force: Number, radius: Number, modulus: Number, mixed_ratio: Number) -> Array:
+    """Half-width of the contact of two half-planes of one anisotropic material in one direction, one with a gap x^2/(2 radius).
+
+    `modulus`: 1/A, `mixed_ratio`: M/A of both bodies together.
+    """
+
+
+@_closed_form
+def oblique_stick_ratio(tangential_force: Number, normal_force: Number, friction_coefficient: Number, mixed_ratio: Number) -> Array:
+    """Width of the stick zone over that of the contact of such bodies, pressed without shear, then sheared by a growing force."""

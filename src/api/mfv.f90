@@ -31,6 +31,7 @@ module mfv
    use mfv_reference_hertz, only: hertz_half_width, hertz_force, hertz_pressure, hertz_approach
    use mfv_reference_indenter, only: indenter_type, power_indenter, rounded_punch_indenter
    use mfv_reference_mindlin, only: mindlin_stick_ratio, mindlin_dissipation, mindlin_history_type, new_mindlin_history
+   use mfv_reference_oblique, only: oblique_half_width, oblique_stick_ratio
    use mfv_reference_persson, only: persson_force
    use mfv_reference_spence, only: spence_cylinder_shear, spence_flat_punch_shear, spence_stick_ratio
    use mfv_reference_yield, only: contact_arc_at_yield

@@ -2,12 +2,14 @@
 module mfv_reference_c
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
    use mfv_kinds, only: wp
-   use mfv_material, only: new_material, plane_strain
+   use mfv_material, only: material_type, new_anisotropic_material, new_material, plane_strain
+   use mfv_near_field, only: near_field_of, near_field_type
    use mfv_reference_carter, only: carter_creepage, carter_shear
    use mfv_reference_flat_punch, only: flat_punch_pressure
    use mfv_reference_hertz, only: hertz_half_width, hertz_pressure
    use mfv_reference_indenter, only: indenter_type, power_indenter, rounded_punch_indenter
    use mfv_reference_mindlin
+   use mfv_reference_oblique, only: oblique_half_width, oblique_stick_ratio
    use mfv_reference_persson, only: persson_force
    use mfv_reference_spence, only: spence_cylinder_shear, spence_flat_punch_shear, spence_stick_ratio
    use mfv_reference_yield, only: contact_arc_at_yield
@@ -89,6 +91,14 @@ contains
          if (fits('xx+++0')) then
             if (a(4) > a(6)) value = shear_of(rounded_punch_indenter(a(6)/a(4), 1.0_wp), a(1), a(2), a(3), a(4), a(5))
          end if
+      case ('surface_compliance')
+         if (fits('+x+xx+x')) value = surface_compliance(a(:6), nint(min(max(a(7), 0.0_wp), 5.0_wp)))
+      case ('oblique_half_width')
+         if (fits('0x++x')) value = oblique_half_width(a(1), a(2), a(3), a(4), a(5))
+      case ('oblique_stick_ratio')
+         if (fits('x++x')) then
+            if (a(2) + a(4)*a(1) > 0) value = oblique_stick_ratio(a(1), a(2), a(3), a(4))
+         end if
       case ('persson_force')
          if (fits('+++n')) then
             value = persson_force(a(1), a(2), a(3)/(1.0_wp - a(4)**2))
@@ -118,6 +128,24 @@ contains
       end function fits
 
    end subroutine evaluate_closed_form
+
+   !> A, At, M or B, by its number, of a half-plane of the compliances s11, s12, s22, s16, s26, s66; NaN for another number or a
+   !> material that is not stable.
+   pure real(wp) function surface_compliance(compliances, number) result(value)
+      real(wp), intent(in) :: compliances(6)
+      integer, intent(in) :: number
+      type(material_type) :: material
+      type(near_field_type) :: constants
+      real(wp) :: all_of_them(4)
+      logical :: valid
+
+      value = ieee_value(1.0_wp, ieee_quiet_nan)
+      call new_anisotropic_material(compliances, 0.0_wp, material, valid)
+      if (.not. valid .or. number < 1 .or. number > size(all_of_them)) return
+      constants = near_field_of(material)
+      all_of_them = [constants%normal, constants%tangential, constants%mixed, constants%coupling]
+      value = all_of_them(number)
+   end function surface_compliance
 
    !> Whether a number is finite (x), positive (+), not negative (0), Kolosov's constant (k), Dundurs' beta (b), Poisson's ratio (n)
    !> or the exponent of an indenter (e). A comparison with NaN may trap.

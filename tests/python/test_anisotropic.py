@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 import mfv
-from mfv import Body, Friction, Mesh, Scene, Step
+from mfv import Body, Friction, Mesh, Scene, Step, reference
 
 Numbers = NDArray[np.float64]
 #: A carbon fibre composite, fibres along the first axis, MPa.
@@ -131,3 +131,157 @@ def test_a_dense_matrix_of_strohs_eigenvectors_gives_the_same(seed: int) -> None
     assert one.summary.events == other_one.summary.events
     for name in ("approach", "shift", "dissipation"):
         assert getattr(one.summary, name) == pytest.approx(getattr(other_one.summary, name), rel=1e-10, abs=1e-15), name
+
+
+def on_a_disk(lower: dict[str, Any], upper: dict[str, Any], loads: list[Step], mu: float, nodes: int = 61, **scene: Any) -> mfv.Result:
+    """A disk with the gap of a parabola, without end effects of its own."""
+    return Scene(
+        Body.half_plane(datum=50.0, **lower),
+        Body.disk(60.0, elasticity="half_plane", datum=50.0, **upper) if not upper.get("elasticity") and not upper.get("rigid")
+        else Body.disk(60.0, **upper),
+        steps=loads,
+        friction=Friction.coulomb(mu),
+        mesh=Mesh(nodes=nodes, gap="parabolic", **scene),
+    ).run(check=True)  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_an_orthotropic_body_is_an_isotropic_one_with_other_friction(seed: int) -> None:
+    """With the axes along and normal to the surface: tau sqrt(At/A) is the shear of an isotropic body with mu sqrt(At/A)."""
+    draw = np.random.default_rng(seed)
+    keys = {**random_material(draw), "axis_angle": 90.0 * (seed % 2)}
+    a, at, m, b = near_field(turned(reduced(keys), keys["axis_angle"]))
+    factor, beta = math.sqrt(at / a), b / math.sqrt(a * at)
+    kappa = (1 + beta) / (1 - beta)
+    twin = {"shear_modulus": (kappa + 1) / (4 * a), "poisson_ratio": (3 - kappa) / 4}
+    mu, force = 0.4, 200.0
+    loads = [Step(normal_force=force), Step(tangential_force=0.2 * force), Step(tangential_force=-0.1 * force, normal_force=0.8 * force)]
+    other = [Step(normal_force=step.normal_force, tangential_force=factor * (step.tangential_force or 0.0)) for step in loads]
+    other[0] = Step(normal_force=force)
+    other[1] = Step(tangential_force=factor * 0.2 * force)
+    one = on_a_disk({"elasticity": "orthotropic", **keys}, {"rigid": True}, loads, mu)
+    same = on_a_disk(twin, {"rigid": True}, other, mu * factor)
+    assert abs(m) < 1e-12 * a
+    np.testing.assert_allclose(one.state.pressure, same.state.pressure, rtol=0, atol=1e-11 * np.max(same.state.pressure))
+    np.testing.assert_allclose(one.state.shear * factor, same.state.shear, rtol=0, atol=1e-11 * np.max(same.state.pressure))
+    np.testing.assert_allclose(one.state.slip / factor, same.state.slip, rtol=0, atol=1e-11 * np.max(np.abs(same.state.slip)))
+    assert one.summary.events == same.summary.events
+    assert one.summary.dissipation == pytest.approx(same.summary.dissipation, rel=1e-10)
+    assert one.scene.dundurs_beta == pytest.approx(beta, rel=1e-10)
+
+
+@pytest.mark.parametrize("angle", [0.0, 37.0, -80.0])
+@pytest.mark.parametrize("plane", ["strain", "stress"])
+def test_an_isotropic_material_by_its_compliances_is_isotropic(plane: str, angle: float) -> None:
+    """At any angle, in both planes, with all stresses: no digits are lost where the roots coincide."""
+    e, nu = 70e3, 0.33
+    compliances = [1 / e, -nu / e, 1 / e, 0.0, 0.0, 2 * (1 + nu) / e] + ([-nu / e, -nu / e, 1 / e, 0.0] if plane == "strain" else [])
+    results = []
+    for lower in ({"youngs_modulus": e, "poisson_ratio": nu}, {"elasticity": "anisotropic", "compliances": compliances, "axis_angle": angle}):
+        scene = Scene(
+            Body.half_plane(datum=50.0, yield_strength=300.0, **lower),
+            Body.disk(60.0, rigid=True),
+            steps=[Step(normal_force=300.0), Step(tangential_force=60.0, lower_bulk_stress=20.0), Step(tangential_force=-50.0)],
+            friction=Friction.coulomb(0.5),
+            mesh=Mesh(nodes=61),
+        )
+        scene.plane = plane
+        results.append(scene.run(check=True))
+    one, other = results
+    for group in ("state", "observables", "error_estimate"):
+        for name in one[group] if isinstance(one, dict) else getattr(one, group):
+            expected = np.asarray(getattr(one, group)[name], dtype=float)
+            scale = np.max(np.abs(expected[np.isfinite(expected)]), initial=0.0)
+            np.testing.assert_allclose(getattr(other, group)[name], expected, rtol=1e-8, atol=1e-10 * scale, err_msg=name)
+    x, y = np.linspace(-2.0, 2.0, 9), np.array([0.0, -0.05, -0.3, -2.0])[:, None]
+    fields = [mfv.stress.stress(result, x, y) for result in results]
+    for name in ("sigma_xx", "sigma_yy", "sigma_xy", "sigma_zz", "von_mises"):
+        np.testing.assert_allclose(fields[1][name], fields[0][name], rtol=0, atol=1e-10 * np.max(np.abs(fields[0][name])), err_msg=name)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_constants_of_the_near_field(seed: int) -> None:
+    """Roots of a polynomial against Stroh's eigenvectors."""
+    keys = random_material(np.random.default_rng(seed))
+    s = turned(reduced(keys), keys["axis_angle"])
+    expected = near_field(s)
+    found = reference.surface_compliance(s[0, 0], s[0, 1], s[1, 1], s[0, 2], s[1, 2], s[2, 2], [1, 2, 3, 4])
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-13 * expected[0])
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_oblique_bodies_of_one_material(side: float) -> None:
+    """Two bodies of one material and direction: B cancels, M does not. With p' = p + (M/A) tau the problem is uncoupled, the friction
+    limit mu/(1 +- mu M/A): the contact is Hertz's under P + (M/A) Q, the stick zone that under P - Q/mu (docs/theory.md)."""
+    keys = {"elasticity": "orthotropic", **CARBON, "axis_angle": 30.0}
+    a, _, m, _ = (2 * value for value in near_field(turned(reduced(CARBON), 30.0)))
+    force, mu, radius = 50.0, 0.4, 60.0
+    q = side * 0.6 * mu * force
+    contact = float(reference.oblique_half_width(force, q, radius, 1 / a, m / a))
+    ratio = float(reference.oblique_stick_ratio(q, force, mu, m / a))
+    assert contact == pytest.approx(math.sqrt(2 * radius * a * (force + m / a * q) / math.pi), rel=1e-14)
+    assert ratio * contact == pytest.approx(math.sqrt(2 * radius * a * (force - abs(q) / mu) / math.pi), rel=1e-14)
+    errors = []
+    for nodes in (101, 202, 404):
+        loads = [Step(normal_force=force, friction=False), Step(tangential_force=q)]
+        result = on_a_disk(keys, keys, loads, mu, nodes, half_width=1.3 * contact)
+        found = result.observables
+        errors.append([found.contact_half_width / contact - 1, found.stick_ratio / ratio - 1])
+    assert np.all(np.abs(errors[0]) < 4e-5) and np.all(np.abs(errors[2]) < 4e-6), errors
+    assert abs(contact / math.sqrt(2 * radius * a * force / math.pi) - 1) > 0.03
+    # Gross sliding: the shear is the friction limit everywhere.
+    last = on_a_disk(keys, keys, [Step(normal_force=force, friction=False), Step(shift=side * 0.1)], mu, 202).observables
+    sliding = math.sqrt(2 * radius * a * force * (1 + side * mu * m / a) / math.pi)
+    assert last.contact_half_width == pytest.approx(sliding, rel=1e-4)
+
+
+def test_stresses_in_the_upper_body_are_those_turned_by_half_a_turn() -> None:
+    """The picture upside down: the stresses at opposite points are the same, for axes at any angle."""
+    soft = {"elasticity": "orthotropic", **CARBON, "axis_angle": 25.0}
+    stiff = {"youngs_modulus": 210e3, "poisson_ratio": 0.3}
+    loads = [Step(normal_force=50.0), Step(tangential_force=12.0)]
+
+    def run(lower: Body, upper: Body) -> mfv.Result:
+        return Scene(lower, upper, steps=loads, friction=Friction.coulomb(0.5), mesh=Mesh(nodes=61, half_width=1.2)).run(check=True)
+
+    plane, pad = Body.half_plane(datum=40.0, **soft), Body.power(1 / 120, 2.0, datum=40.0, **stiff)
+    one, other = run(plane, pad), run(pad, plane)
+    x, y = np.linspace(-1.5, 1.5, 7), np.array([-0.02, -0.4, -1.5])[:, None]
+    for body, opposite, sign in (("lower", "upper", 1.0), ("upper", "lower", -1.0)):
+        here, there = mfv.stress.stress(one, x, sign * y, body=body), mfv.stress.stress(other, -x, -sign * y, body=opposite)
+        for name in ("sigma_xx", "sigma_yy", "sigma_xy", "sigma_zz"):
+            np.testing.assert_allclose(there[name], here[name], rtol=0, atol=1e-9 * np.max(np.abs(here[name])), err_msg=name)
+    # At the surface the strain along it is continuous where bodies stick: their displacements agree.
+    assert np.max(np.abs(one.state.slip)) > 0
+
+
+@pytest.mark.parametrize(
+    ("keys", "plane", "what"),
+    [
+        ({"elasticity": "orthotropic"}, "strain", "youngs_modulus_1 is missing"),
+        ({"elasticity": "orthotropic", **CARBON, "poisson_ratio": 0.3}, "strain", "poisson_ratio=0.3: has no effect for a half_plane with"),
+        ({"elasticity": "orthotropic", **CARBON}, "stress", "youngs_modulus_3=10000: has no effect with plane='stress'"),
+        ({"elasticity": "orthotropic", **CARBON, "poisson_ratio_12": 4.0}, "strain", "poisson_ratio_12=4: no such material"),
+        ({"elasticity": "anisotropic"}, "strain", "compliances is missing"),
+        ({"elasticity": "anisotropic", "compliances": [1.0, 0.0, 1.0, 0.0, 0.0, 2.0]}, "strain", "must be ten numbers in plane strain"),
+        ({"elasticity": "anisotropic", "compliances": [1.0] * 10}, "stress", "must be six numbers in plane stress"),
+        ({"elasticity": "anisotropic", "compliances": [1.0, 1.1, 1.0, 0.0, 0.0, 2.0]}, "stress", "no such material"),
+        ({"youngs_modulus": 1.0, "poisson_ratio": 0.3, "axis_angle": 3.0}, "strain", "axis_angle=3: has no effect for a half_plane"),
+    ],
+)
+def test_what_does_not_fit_is_refused(keys: dict[str, Any], plane: str, what: str) -> None:
+    scene = Scene(Body.half_plane(**keys), Body.disk(1.0, rigid=True), steps=[Step(normal_force=1.0)])
+    scene.plane = plane
+    with pytest.raises(mfv.errors.InputError, match=what):
+        scene.run()
+
+
+def test_dundurs_beta_and_fatigue_need_isotropic_bodies() -> None:
+    scene = Scene(
+        Body.half_plane(elasticity="orthotropic", **CARBON), Body.disk(60.0, rigid=True), steps=[Step(normal_force=5.0), Step(tangential_force=1.0, cycles=1)],
+        friction=Friction.coulomb(0.5), mesh=Mesh(nodes=21),
+    )  # fmt: skip
+    result = scene.run(check=True)
+    assert result.scene.lower_compliance_11 == pytest.approx(reduced(CARBON)[0, 0], rel=1e-14)
+    with pytest.raises(ValueError, match="the lower body is anisotropic"):
+        mfv.fatigue.stress_cycle(result, [0.0], [-0.1])
