@@ -5,8 +5,8 @@
 !>
 !>     s11 mu^4 - 2 s16 mu^3 + (2 s12 + s66) mu^2 - 2 s26 mu + s22 = 0
 !>
-!> with positive imaginary parts (Lekhnitskii 1963, section 7; Ting 1996, chapter 5). Only their sum and product are needed, which
-!> keep all digits where the roots coincide: mu1 = mu2 = i of an isotropic material.
+!> with positive imaginary parts (docs/theory.md). Only their sum and product are needed, which keep all digits where the roots
+!> coincide: mu1 = mu2 = i of an isotropic material.
 module mfv_material
    use mfv_kinds, only: pi, wp
    implicit none
@@ -34,6 +34,7 @@ module mfv_material
       procedure :: plane_modulus
       procedure :: roots
       procedure :: stress_out_of_plane
+      procedure :: pressure_stretches
       procedure :: mirrored
    end type material_type
 
@@ -99,7 +100,7 @@ contains
    end subroutine new_anisotropic_material
 
    !> Turn a material counterclockwise by an angle, radians. With T the stresses along its axes by those along x and y, the
-   !> compliances are T' S T (Ting 1996, section 2.4, with the engineering shear strain).
+   !> compliances are T' S T, with the engineering shear strain.
    pure subroutine turn(material, angle)
       type(material_type), intent(inout) :: material
       real(wp), intent(in) :: angle
@@ -201,6 +202,14 @@ contains
 
       stress = sum(self%out_of_plane*in_plane)
    end function stress_out_of_plane
+
+   !> Whether a pressure can cause tension along a straight surface, see surface_stress_of in mfv_interior_half_plane: not where it is
+   !> isotropic or the axes of an orthotropic material are along the surface and normal to it.
+   elemental logical function pressure_stretches(self)
+      class(material_type), intent(in) :: self
+
+      pressure_stretches = abs(aimag(self%root_product)) > 0.0_wp .or. real(self%root_product, wp) > 0.0_wp
+   end function pressure_stretches
 
    !> The material of the mirror image at the surface: that of an upper body, seen as a lower one.
    pure type(material_type) function mirrored(self) result(image)

@@ -6,7 +6,7 @@
 !>
 !> up to smooth functions. Of an isotropic material A = At = (kappa + 1)/(4 G), M = 0 and B = (kappa - 1)/(4 G) (Johnson 1985, section
 !> 2.2; Barber 2010, chapter 12). In general, with the roots of mfv_material, A = -s22 Im(1/mu1 + 1/mu2), At = s11 Im(mu1 + mu2),
-!> M = -s11 Im(mu1 mu2) and B = s12 - s11 Re(mu1 mu2) (docs/theory.md; Ting 1996, section 6.9). M vanishes where the axes of an
+!> M = -s11 Im(mu1 mu2) and B = s12 - s11 Re(mu1 mu2) (docs/theory.md). M vanishes where the axes of an
 !> orthotropic material are along and normal to the surface. Edges, scales and closed forms need no more of a body's elasticity than
 !> these constants.
 module mfv_near_field
@@ -65,7 +65,7 @@ contains
       if (self%normal > 0.0_wp) modulus = 1.0_wp/self%normal
    end function modulus
 
-   !> B/sqrt(A At - M^2): Dundurs' second parameter (dissertation eq. 6.1; of anisotropic pairs Ting 1996, section 8.8), positive if
+   !> B/sqrt(A At - M^2): Dundurs' second parameter (dissertation eq. 6.1; docs/theory.md), positive if
    !> the coupling of the lower body is stronger; 0 without constants.
    elemental real(wp) function beta(self)
       class(near_field_type), intent(in) :: self

@@ -1,7 +1,7 @@
 !> Stresses inside a half-plane under tractions that are linear on elements of its surface, in closed form.
 !>
 !> With sigma_yy = -p, sigma_xy = tau on y = 0, the integrals N(z) of p/(t - z) dt and T(z) of tau/(t - z) dt, and the roots mu1 and
-!> mu2 of mfv_material, the derivatives of Lekhnitskii's potentials (1963, section 7) in the lower half-plane are
+!> mu2 of mfv_material, the derivatives of Lekhnitskii's potentials in the lower half-plane are (docs/theory.md)
 !>
 !>     Phi1 = (mu2 N - T)/(2 pi i (mu2 - mu1)) at z1 = x + mu1 y,    Phi2 = (T - mu1 N)/(2 pi i (mu2 - mu1)) at z2 = x + mu2 y
 !>

@@ -121,18 +121,20 @@ contains
 
    !> Largest tension at the surface, force/length^2: at edges of contact and stick zones, where it has cusps, between them
    !> and beside the contact (on a circle, everywhere), but not next to corners, where the pressure compresses the surface without
-   !> limit. NaN where tractions are singular, at the end of a surface under shear; `x` and `y` are NaN without any tension,
+   !> limit. NaN where it has no limit, as at the end of a surface under shear; `x` and `y` are NaN without any tension,
    !> and if the bulk stress is the largest.
    type(largest_type) function largest_tension(interior) result(largest)
       type(interior_type), intent(in) :: interior
       real(wp) :: place, point(2), value
+      logical :: stretches
 
       largest%x = ieee_value(1.0_wp, ieee_quiet_nan)
       largest%y = largest%x
       largest%value = max(interior%bulk, 0.0_wp)
       if (.not. interior%half_width() > 0.0_wp) return
-      if (.not. interior%body%deforms_as_circle() .and. .not. interior%is_sheared()) return
-      if (interior%elements%singular) then
+      stretches = interior%body%elasticity%material%pressure_stretches()
+      if (.not. (interior%body%deforms_as_circle() .or. interior%is_sheared() .or. stretches)) return
+      if (interior%elements%singular .or. (interior%elements%sharp .and. stretches)) then
          largest%value = ieee_value(1.0_wp, ieee_quiet_nan)
          return
       end if

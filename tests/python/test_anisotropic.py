@@ -44,7 +44,7 @@ def turned(compliance: Numbers, degrees: float) -> Numbers:
 
 
 def near_field(compliance: Numbers) -> tuple[float, float, float, float]:
-    """A, At, M and B (docs/theory.md) from Stroh's eigenvectors: L^-1 - i S L^-1 = i A B^-1 (Ting 1996, chapter 7), in x and y."""
+    """A, At, M and B (docs/theory.md) from Stroh's eigenvectors: L^-1 - i S L^-1 = i A B^-1, in x and y."""
     stiffness = np.linalg.inv(compliance)
     q, r, t = (stiffness[np.ix_(rows, columns)] for rows, columns in (([0, 2], [0, 2]), ([0, 2], [2, 1]), ([2, 1], [2, 1])))
     inverse = np.linalg.inv(t)
@@ -285,3 +285,38 @@ def test_dundurs_beta_and_fatigue_need_isotropic_bodies() -> None:
     assert result.scene.lower_compliance_11 == pytest.approx(reduced(CARBON)[0, 0], rel=1e-14)
     with pytest.raises(ValueError, match="the lower body is anisotropic"):
         mfv.fatigue.stress_cycle(result, [0.0], [-0.1])
+
+
+@pytest.mark.parametrize("angle", [30.0, -70.0])
+def test_pressure_alone_stretches_an_oblique_surface(angle: float) -> None:
+    """Without friction a rigid cylinder stretches it at one edge: |M|/s11 times Hertz's pressure, at the left one if M is positive."""
+    s = turned(reduced(CARBON), angle)
+    _, _, m, _ = near_field(s)
+    scene = Scene(
+        Body.half_plane(elasticity="orthotropic", axis_angle=angle, **CARBON),
+        Body.disk(60.0, rigid=True),
+        steps=[Step(normal_force=50.0)],
+        mesh=Mesh(nodes=101, gap="parabolic"),
+    )
+    found = scene.run(check=True).observables
+    peak = 2 * 50.0 / (math.pi * found.contact_half_width)
+    assert found.lower_tension == pytest.approx(abs(m) / s[0, 0] * peak, rel=2e-4)
+    assert found.lower_tension_x == pytest.approx(-math.copysign(found.contact_half_width, m), rel=1e-3)
+    sharp = Scene(
+        Body.half_plane(elasticity="orthotropic", axis_angle=angle, **CARBON), Body.flat_punch(1.0), steps=[Step(normal_force=50.0)]
+    ).run(check=True)
+    assert "lower_tension" not in sharp.observables
+
+
+@pytest.mark.parametrize(("nu", "mu", "is_stretched"), [(-0.5, 5.0, True), (-0.5, 0.3, False), (0.3, 5.0, False)])
+def test_the_tip_of_a_wedge_stretches_an_auxetic_plane_that_sticks(nu: float, mu: float, is_stretched: bool) -> None:
+    """(2 beta - 1) p where it sticks, beta = (1 - 2 nu)/(2 (1 - nu)) of a plane under a rigid wedge: no largest tension is given. Where it
+    slides, or is not auxetic, it is compressed."""
+    scene = Scene(
+        Body.half_plane(youngs_modulus=1.0, poisson_ratio=nu, datum=10.0),
+        Body.wedge(5.0, rigid=True),
+        steps=[Step(normal_force=0.1), *([] if mu > 1 else [Step(shift=2.0)])],
+        friction=Friction.coulomb(mu),
+        mesh=Mesh(nodes=61),
+    )
+    assert ("lower_tension" in scene.run(check=True).observables) is not is_stretched

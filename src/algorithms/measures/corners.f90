@@ -1,23 +1,29 @@
 !> Convex corners of the undeformed surfaces in contact, such as the tip of a wedge, where the pressure has no limit.
 !>
 !> Where the slope of the surfaces jumps by J the pressure is -(m J/pi) ln|x| and smooth terms, m = scene%modulus() (wedge: Johnson
-!> 1985, section 5.2). The stress along the surface is -p - (2/pi) PV int tau/(x - s) ds. There, for a body with Dundurs' beta (of
-!> the other sign for the upper one), it is -(1 - 2 beta) p + m e where the surfaces stick, e the difference of their strains,
-!> and -(1 + 2 beta mu^2) p + a bounded term where they slip (docs/theory.md): a surface is compressed without limit, or e is its
-!> limit. It would be stretched without limit for beta > 1/2 (an auxetic body) where a corner
-!> has not slipped, and for -2 beta mu^2 > 1 where it slips; this is not looked for.
+!> 1985, section 5.2). The stress along the surface is c p - a tau + b T - d N, N and T the integrals of p/(t - x) dt/pi and
+!> tau/(t - x) dt/pi (surface_stress_of in mfv_interior_half_plane). The equations of mfv_near_field, A N + M T + B tau the slope of the
+!> gap and At T + M N - B p the difference e of the strains, bounded both, give N and T where p is not: where the surfaces stick T = B
+!> p/(At - M^2/A) and N = -(M/A) T, where they slip with tau = f p, N = -B f p/(A + M f) and T = f N. An isotropic surface is compressed by
+!> 1 - 2 beta and 1 + 2 beta f^2 times p, without limit; others, such as auxetic ones that stick, can be stretched.
 module mfv_corners
+   use mfv_compliance, only: block_up, block_wt
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
+   use mfv_interior_half_plane, only: surface_stress_of
    use mfv_kinds, only: pi, wp
-   use mfv_node_status, only: in_contact
+   use mfv_material, only: material_type
+   use mfv_near_field, only: near_field_type
+   use mfv_node_status, only: holds, in_contact
+   use mfv_tolerances, only: significant
    implicit none
    private
-   public :: corner_type, find_corner, corners_of
+   public :: corner_type, find_corner, corners_of, is_stretched_at
 
-   !> A corner at the arc length `place` from the origin of x, and the distance within which tractions between the nodes are not
-   !> resolved; lengths.
+   !> A corner at the arc length `place` from the origin of x, near a node, and the distance within which tractions between the nodes
+   !> are not resolved; lengths.
    type :: corner_type
+      integer :: node = 0
       real(wp) :: place = 0.0_wp, reach = 0.0_wp
    end type corner_type
 
@@ -51,6 +57,7 @@ contains
       if (sum(abs(change(-far:-near - 1))) + sum(abs(change(near + 1:far))) > other*jump) return
       if (.not. model%scene%modulus()*jump/pi*log(2.0_wp) > least_growth*pressure(node)) return
       found = .true.
+      corner%node = node
       corner%place = sum(change(-near:near)*model%arc(node - near:node + near))/sum(change(-near:near))
       corner%reach = max(model%arc(node + unresolved) - corner%place, corner%place - model%arc(node - unresolved))
    end subroutine find_corner
@@ -71,5 +78,44 @@ contains
          if (found) corners = [corners, corner]
       end do
    end function corners_of
+
+   !> Whether the stress along the surface of the lower or `upper` body at a corner is a tension without limit.
+   logical function is_stretched_at(model, state, corner, upper)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      type(corner_type), intent(in) :: corner
+      logical, intent(in) :: upper
+      type(near_field_type) :: pair
+      type(material_type) :: material
+      real(wp) :: ratio, of_pressure, of_shear
+
+      pair = model%scene%near_field()
+      material = model%scene%lower%elasticity%material
+      ratio = state%fields%shear(corner%node)/state%fields%pressure(corner%node)
+      if (upper) then
+         pair = pair%with_reversed_shear()
+         material = model%scene%upper%elasticity%material
+         ratio = -ratio
+      end if
+      if (.not. model%compliance%elastic_block(block_up)) pair = near_field_type(pair%normal, pair%tangential)
+      associate (a => pair%normal, at => pair%tangential, b => pair%coupling, m => pair%mixed)
+         of_pressure = 0.0_wp
+         of_shear = 0.0_wp
+         if (model%compliance%elastic_block(block_wt)) then
+            if (holds(state%status(corner%node))) then
+               ratio = 0.0_wp
+               of_shear = b/(at - m**2/a)
+               of_pressure = -m/a*of_shear
+            else
+               of_pressure = -pair%edge_product(ratio)
+               of_shear = ratio*of_pressure
+            end if
+         else if (holds(state%status(corner%node))) then
+            ratio = 0.0_wp
+            of_shear = b/at
+         end if
+      end associate
+      is_stretched_at = surface_stress_of(material, 1.0_wp, ratio, of_pressure, of_shear) > significant
+   end function is_stretched_at
 
 end module mfv_corners

@@ -3,7 +3,7 @@ module mfv_state_interior
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
-   use mfv_corners, only: corner_type, corners_of
+   use mfv_corners, only: corner_type, corners_of, is_stretched_at
    use mfv_interior, only: has_interior, interior_type
    use mfv_kinds, only: wp
    use mfv_motions, only: bulk_motions
@@ -40,6 +40,7 @@ contains
       allocate (interior%unresolved(2, size(corners)))
       do i = 1, size(corners)
          interior%unresolved(:, i) = corners(i)%place + corners(i)%reach*[-1.0_wp, 1.0_wp]
+         interior%elements%singular = interior%elements%singular .or. is_stretched_at(model, state, corners(i), upper)
       end do
    end subroutine state_interior
 
@@ -51,9 +52,12 @@ contains
       type(largest_type), intent(out) :: largest
       logical, intent(out) :: available
       type(interior_type) :: interior
+      logical :: stretches
 
-      ! Pressure only compresses a straight surface.
-      available = model%scene%can_have_bulk_stress(upper) .and. &
+      ! Pressure only compresses most straight surfaces.
+      stretches = model%scene%lower%elasticity%material%pressure_stretches()
+      if (upper) stretches = model%scene%upper%elasticity%material%pressure_stretches()
+      available = model%scene%can_have_bulk_stress(upper) .and. .not. stretches .and. &
                   .not. maxval(abs(state%fields%shear)) > certified*maxval(state%fields%pressure)
       if (available) then
          largest%value = max(state%fields%motion(bulk_motions(merge(2, 1, upper))), 0.0_wp)
