@@ -228,7 +228,9 @@ def surface_compliance(s11: Number, s12: Number, s22: Number, s16: Number, s26: 
 
 
 @_closed_form
-def oblique_half_width(normal_force: Number, tangential_force: Number, radius: Number, modulus: Number, mixed_ratio: Number) -> Array:
+def oblique_half_width(
+    normal_force: Number, tangential_force: Number, radius: Number, modulus: Number, mixed_ratio: Number
+) -> Array:
     """Half-width of the contact of two half-planes of one anisotropic material in one direction, one with a gap x^2/(2 radius).
 
     `modulus`: 1/A, `mixed_ratio`: M/A of both bodies together.

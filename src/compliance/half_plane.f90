@@ -6,8 +6,8 @@
 !>
 !>     w = A L,    u = M L - B h step_kernel(x/h)
 !>
-!> and a unit shear u = At L and w = M L + B h step_kernel(x/h). A half-plane has no rigid-body constraint: displacements are measured
-!> from the surface points at the distance D (`datum`), where L of a concentrated force vanishes.
+!> and a unit shear u = At L and w = M L + B h step_kernel(x/h). A half-plane has no rigid-body constraint: displacements are
+!> measured from the surface points at the distance D (`datum`), where L of a concentrated force vanishes.
 !>
 !> Equation A.10 in print has -A/(2 pi) with A = 2(1-nu^2)/E in front of *squared* logarithms, too large by a factor of two;
 !> the signs of the coupling terms in A.1/A.2 and A.11/A.13 contradict each other. The signs here satisfy reciprocity,

@@ -139,10 +139,10 @@ contains
                   s(s66)*minor - s(s11)*s(s26)**2 - s(s22)*s(s16)**2 + 2.0_wp*s(s12)*s(s16)*s(s26) > least*s(s66)*minor
    end function is_stable
 
-   !> Sum a + i b and product c + i d of the roots, from (mu^2 - (a + i b) mu + c + i d)(mu^2 - (a - i b) mu + c - i d): a = s16/s11,
-   !> 2 c = k - a^2 - b^2, b d = s26/s11 - a c and c^2 + d^2 = s22/s11, k = (2 s12 + s66)/s11. So b^2 is a root of a cubic; the
-   !> largest, for the other pairs of the four roots have smaller sums of imaginary parts. Newton's iteration from above descends
-   !> to it without a loss of digits: the others are (Im mu1 - Im mu2)^2 and -(Re mu1 - Re mu2)^2.
+   !> Sum a + i b and product c + i d of the roots, from (mu^2 - (a + i b) mu + c + i d)(mu^2 - (a - i b) mu + c - i d): a =
+   !> s16/s11, 2 c = k - a^2 - b^2, b d = s26/s11 - a c and c^2 + d^2 = s22/s11, k = (2 s12 + s66)/s11. So b^2 is a root of a
+   !> cubic; the largest, for the other pairs of the four roots have smaller sums of imaginary parts. Newton's iteration from
+   !> above descends to it without a loss of digits: the others are (Im mu1 - Im mu2)^2 and -(Re mu1 - Re mu2)^2.
    pure subroutine find_roots(material)
       type(material_type), intent(inout) :: material
       real(wp) :: a, k, skew, last, square, next, c, d, slope
@@ -203,8 +203,8 @@ contains
       stress = sum(self%out_of_plane*in_plane)
    end function stress_out_of_plane
 
-   !> Whether a pressure can cause tension along a straight surface, see surface_stress_of in mfv_interior_half_plane: not where it is
-   !> isotropic or the axes of an orthotropic material are along the surface and normal to it.
+   !> Whether a pressure can cause tension along a straight surface, see surface_stress_of in mfv_interior_half_plane: not where
+   !> it is isotropic or the axes of an orthotropic material are along the surface and normal to it.
    elemental logical function pressure_stretches(self)
       class(material_type), intent(in) :: self
 

@@ -4,11 +4,11 @@
 !>     w by P:  -(A/pi) ln|x|      w by Q:  -(M/pi) ln|x| + B/2 sgn x
 !>     u by Q:  -(At/pi) ln|x|     u by P:  -(M/pi) ln|x| - B/2 sgn x
 !>
-!> up to smooth functions. Of an isotropic material A = At = (kappa + 1)/(4 G), M = 0 and B = (kappa - 1)/(4 G) (Johnson 1985, section
-!> 2.2; Barber 2010, chapter 12). In general, with the roots of mfv_material, A = -s22 Im(1/mu1 + 1/mu2), At = s11 Im(mu1 + mu2),
-!> M = -s11 Im(mu1 mu2) and B = s12 - s11 Re(mu1 mu2) (docs/theory.md). M vanishes where the axes of an
-!> orthotropic material are along and normal to the surface. Edges, scales and closed forms need no more of a body's elasticity than
-!> these constants.
+!> up to smooth functions. Of an isotropic material A = At = (kappa + 1)/(4 G), M = 0 and B = (kappa - 1)/(4 G) (Johnson 1985,
+!> section 2.2; Barber 2010, chapter 12). In general, with the roots of mfv_material, A = -s22 Im(1/mu1 + 1/mu2), At = s11 Im(mu1
+!> + mu2), M = -s11 Im(mu1 mu2) and B = s12 - s11 Re(mu1 mu2) (docs/theory.md). M vanishes where the axes of an orthotropic
+!> material are along and normal to the surface. Edges, scales and closed forms need no more of a body's elasticity than these
+!> constants.
 module mfv_near_field
    use mfv_kinds, only: wp
    use mfv_material, only: material_type
@@ -90,8 +90,9 @@ contains
       if (self%normal > 0.0_wp) coupling_ratio = max(abs(self%coupling), abs(self%mixed))/sqrt(self%normal*self%tangential)
    end function coupling_ratio
 
-   !> Where surfaces slip with tau = f p, their slopes are those of (A + M f) times the integral of p/(t - x) dt/pi, and B f p. At the edge
-   !> of the slip zone the exponent 1/2 is changed by 1/pi atan(B f/(A + M f)) (isotropic: Johnson 1985, section 8.1): that ratio.
+   !> Where surfaces slip with tau = f p, their slopes are those of (A + M f) times the integral of p/(t - x) dt/pi, and B f p. At
+   !> the edge of the slip zone the exponent 1/2 is changed by 1/pi atan(B f/(A + M f)) (isotropic: Johnson 1985, section 8.1):
+   !> that ratio.
    elemental real(wp) function edge_product(self, ratio) result(product)
       class(near_field_type), intent(in) :: self
       real(wp), intent(in) :: ratio

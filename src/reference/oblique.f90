@@ -18,8 +18,8 @@ contains
       half_width = hertz_half_width(normal_force + mixed_ratio*tangential_force, radius, modulus)
    end function oblique_half_width
 
-   !> Width of the stick zone over that of the contact, pressed without shear, then sheared by a growing force: the stick zone is the
-   !> contact under P - |Q|/mu. 0 if everything slides.
+   !> Width of the stick zone over that of the contact, pressed without shear, then sheared by a growing force: the stick zone is
+   !> the contact under P - |Q|/mu. 0 if everything slides.
    pure real(wp) function oblique_stick_ratio(tangential_force, normal_force, friction_coefficient, mixed_ratio) result(ratio)
       real(wp), intent(in) :: tangential_force, normal_force, friction_coefficient, mixed_ratio
 

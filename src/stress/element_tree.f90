@@ -220,9 +220,9 @@ contains
       leaves = count(self%halves == 0)
    end function leaves
 
-   !> Integrals over the elements distant from both points z, on one side of the surface: of sigma/(s - z1) ds, its divided difference
-   !> sigma/((s - z1) (s - z2)) ds, the derivative where the points are equal, and both for aimag(sigma). The other elements are in
-   !> the first `number` ranges of elements `near`, shape (2, leaves).
+   !> Integrals over the elements distant from both points z, on one side of the surface: of sigma/(s - z1) ds, its divided
+   !> difference sigma/((s - z1) (s - z2)) ds, the derivative where the points are equal, and both for aimag(sigma). The other
+   !> elements are in the first `number` ranges of elements `near`, shape (2, leaves).
    pure subroutine find_distant(self, z, integrals, near, number)
       class(element_tree_type), intent(in) :: self
       complex(wp), intent(in) :: z(2)
@@ -252,8 +252,8 @@ contains
       end do
    end subroutine find_distant
 
-   !> Add the integrals of a group, at points `away` from its middle. Polynomials of the ratio by Horner's scheme, whose intermediate
-   !> values are the coefficients of the divided difference.
+   !> Add the integrals of a group, at points `away` from its middle. Polynomials of the ratio by Horner's scheme, whose
+   !> intermediate values are the coefficients of the divided difference.
    pure subroutine add_group(moments, shear_moments, radius, away, integrals)
       complex(wp), intent(in) :: moments(0:), shear_moments(0:), away(2)
       real(wp), intent(in) :: radius

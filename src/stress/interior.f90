@@ -329,8 +329,9 @@ contains
       end associate
    end function zone_edges
 
-   !> Places where the slope of the shear traction (and of the pressure where it stretches the surface) changes most, and their neighbours, arc lengths from the origin of x,
-   !> ascending: edges of former zones, which are not among the edges but where the tension has cusps.
+   !> Places where the slope of the shear traction (and of the pressure where it stretches the surface) changes most, and their
+   !> neighbours, arc lengths from the origin of x, ascending: edges of former zones, which are not among the edges but where the
+   !> tension has cusps.
    function kinks(self) result(places)
       class(interior_type), intent(in) :: self
       real(wp), allocatable :: places(:)
@@ -349,7 +350,7 @@ contains
          associate (material => self%body%elasticity%material)
             slope = aimag(elements%last - elements%first)/length
             if (material%pressure_stretches()) slope = aimag(material%root_sum)*slope &
-                                                    - aimag(material%root_product)*real(elements%last - elements%first, wp)/length
+                                                      - aimag(material%root_product)*real(elements%last - elements%first, wp)/length
          end associate
          change = 0.0_wp
          where (.not. elements%from(2:) > elements%to(:n - 1)) change = abs(slope(2:) - slope(:n - 1))*(length(2:) + length(:n - 1))

@@ -12,9 +12,9 @@
 !>     sigma_yy = 2 Re [N - mu1 y N' + y T']/(2 pi i)
 !>     sigma_xy = 2 Re [mu1 mu2 y N' - T - mu2 y T']/(2 pi i)
 !>
-!> N and T at z1. With equal roots N' and T' are derivatives: of an isotropic material Muskhelishvili's solution (1953, sections 90 to
-!> 93; Johnson 1985, section 2.5, for uniform and triangular tractions). The integrals over an element are elementary; for elements
-!> that are short compared with their distance, series avoid cancellation; groups of distant elements act together
+!> N and T at z1. With equal roots N' and T' are derivatives: of an isotropic material Muskhelishvili's solution (1953, sections
+!> 90 to 93; Johnson 1985, section 2.5, for uniform and triangular tractions). The integrals over an element are elementary; for
+!> elements that are short compared with their distance, series avoid cancellation; groups of distant elements act together
 !> (mfv_element_tree).
 module mfv_interior_half_plane
    use mfv_element_tree, only: element_tree_type, last_not_above, new_straight_tree
@@ -146,8 +146,8 @@ contains
       surface_stress = surface_stress_of(self%material, here(1), here(2), sums(1)/pi, sums(2)/pi)
    end function surface_stress
 
-   !> sigma_xx at a surface point with the tractions `pressure` and `shear`, force/length^2, and the integrals of p/(t - x) dt/pi and
-   !> tau/(t - x) dt/pi.
+   !> sigma_xx at a surface point with the tractions `pressure` and `shear`, force/length^2, and the integrals of p/(t - x) dt/pi
+   !> and tau/(t - x) dt/pi.
    elemental real(wp) function surface_stress_of(material, pressure, shear, of_pressure, of_shear) result(stress)
       type(material_type), intent(in) :: material
       real(wp), intent(in) :: pressure, shear, of_pressure, of_shear
@@ -210,8 +210,8 @@ contains
    end subroutine add_surface_element
 
    !> Integrals over an element of 1/(t - z1) and u/(t - z1) dt, u from -1 to 1, z1 = -mu1 depth, and their divided differences
-   !> between z1 and z2 (zero on the surface, where they are not needed). `left`, `right`: its ends relative to the point; `depth` of
-   !> the point; `roots`: mu1 and mu2.
+   !> between z1 and z2 (zero on the surface, where they are not needed). `left`, `right`: its ends relative to the point; `depth`
+   !> of the point; `roots`: mu1 and mu2.
    pure subroutine element_integrals(left, right, depth, roots, integral, difference)
       real(wp), intent(in) :: left, right, depth
       complex(wp), intent(in) :: roots(2)

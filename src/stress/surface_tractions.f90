@@ -23,8 +23,8 @@ module mfv_surface_tractions
    real(wp), parameter :: half_interval = 0.5_wp*(1.0_wp - significant)
 
    !> Edges, arc lengths, left one first; shapes (2, zones). At a sharp edge the pressure does not vanish: the end of a body's
-   !> surface. `pair`: near field of both bodies, 0 without coupling. `turn`: angle by which the normals turn per arc length, radians per
-   !> length: with radial normals 1/R for a disk, -1/R for a hole; 0 for parallel normals.
+   !> surface. `pair`: near field of both bodies, 0 without coupling. `turn`: angle by which the normals turn per arc length,
+   !> radians per length: with radial normals 1/R for a disk, -1/R for a hole; 0 for parallel normals.
    type :: zone_list_type
       real(wp), allocatable :: contact(:, :), stick(:, :)
       logical, allocatable :: sharp(:, :)

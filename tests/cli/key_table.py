@@ -26,10 +26,17 @@ def scene(
 
 
 COULOMB = {"law": "'coulomb'", "mu": "0.7"}
+ORTHOTROPIC = {
+    "shape": "'half_plane'", "elasticity": "'orthotropic'", "youngs_modulus_1": "3.0", "youngs_modulus_2": "1.0", "youngs_modulus_3": "1.0",
+    "poisson_ratio_12": "0.3", "poisson_ratio_13": "0.3", "poisson_ratio_23": "0.3", "shear_modulus_12": "0.5",
+}  # fmt: skip
+ANISOTROPIC = {"shape": "'half_plane'", "elasticity": "'anisotropic'", "compliances": "1, -0.3, 1, 0.1, 0, 2.6, -0.3, -0.3, 1, 0"}
 
 #: Scenes in which keys make sense. The files that they name are made by the test.
 SCENES: dict[str, Groups] = {
     "cylinder": scene(ELASTIC, RIGID_DISK, MESH, COULOMB, PRESS, SHEAR),
+    "composite": scene(ORTHOTROPIC, RIGID_DISK, MESH, COULOMB, PRESS, SHEAR),
+    "crystal": scene(ANISOTROPIC, RIGID_DISK, MESH, COULOMB, PRESS, SHEAR),
     "free mesh": scene(ELASTIC, RIGID_DISK, {"nodes": "11"}, COULOMB, PRESS, SHEAR),
     "elastic disk": scene(ELASTIC_DISK, RIGID_PLANE, {"nodes": "12", "half_angle": "9"}, COULOMB, PRESS, SHEAR),
     "fourier": scene(ELASTIC_DISK | {"kernel": "'fourier'"}, RIGID_PLANE, {"nodes": "12", "half_angle": "9"}, COULOMB, PRESS),
@@ -242,7 +249,49 @@ CASE: dict[tuple[str, str], Row] = {
         upper=100.0,
         needed=": exponent is missing; it must be a number at least 1 and at most 100",
     ),
-    ("body", "elasticity"): choice("body(1)", "bore", "'own'", "own half_plane"),
+    ("body", "elasticity"): choice(
+        "body(1)",
+        "bore",
+        "'own'",
+        "own half_plane orthotropic anisotropic",
+        refused={"'orthotropic'": "has no effect for a disk with", "'anisotropic'": "has no effect for a disk with"},
+    ),
+    **{
+        ("body", name): positive(
+            "body(1)",
+            "composite",
+            ORTHOTROPIC[name],
+            MODULUS,
+            needed=f": {name} is missing; it must be a number above 0",
+            refused=dict.fromkeys(unstable, "no such material"),
+        )
+        for name, unstable in (
+            ("youngs_modulus_1", ("1e-100", "1e-15")),
+            ("youngs_modulus_2", ("1e100", "1e-100", "1e-15")),
+            ("youngs_modulus_3", ("1e100",)),
+            ("shear_modulus_12", ()),
+        )
+    },
+    **{
+        ("body", name): real(
+            "body(1)",
+            "composite",
+            "0.3",
+            needed=f": {name} is missing; it must be a number",
+            refused=dict.fromkeys(("1e100", "-1e100"), "no such material"),
+        )
+        for name in ("poisson_ratio_12", "poisson_ratio_13", "poisson_ratio_23")
+    },
+    ("body", "compliances"): real(
+        "body(1)",
+        "crystal",
+        ANISOTROPIC["compliances"],
+        "length^2/force",
+        is_list=True,
+        needed=": compliances is missing; it must be a number",
+        refused=dict.fromkeys(("1e100", "-1e100", "1e-100", "-1e-100", "1e-400", "-0.0", "0"), "must be ten numbers"),
+    ),
+    ("body", "axis_angle"): real("body(1)", "composite", "0", "degrees", lower=-180.0, upper=180.0),
     ("body", "kernel"): choice("body(1)", "elastic disk", "'exact'", "exact fourier"),
     ("body", "harmonics"): whole(
         "body(1)",

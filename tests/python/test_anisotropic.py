@@ -127,13 +127,17 @@ def test_a_dense_matrix_of_strohs_eigenvectors_gives_the_same(seed: int) -> None
     one, other_one = direct.run(check=True), dense.run(check=True)
     scale = np.max(other_one.state.pressure)
     for name in ("pressure", "shear"):
-        np.testing.assert_allclose(getattr(one.state, name), getattr(other_one.state, name), rtol=0, atol=2e-12 * scale, err_msg=name)
+        np.testing.assert_allclose(
+            getattr(one.state, name), getattr(other_one.state, name), rtol=0, atol=2e-12 * scale, err_msg=name
+        )
     assert one.summary.events == other_one.summary.events
     for name in ("approach", "shift", "dissipation"):
         assert getattr(one.summary, name) == pytest.approx(getattr(other_one.summary, name), rel=1e-10, abs=1e-15), name
 
 
-def on_a_disk(lower: dict[str, Any], upper: dict[str, Any], loads: list[Step], mu: float, nodes: int = 61, **scene: Any) -> mfv.Result:
+def on_a_disk(
+    lower: dict[str, Any], upper: dict[str, Any], loads: list[Step], mu: float, nodes: int = 61, **scene: Any
+) -> mfv.Result:
     """A disk with the gap of a parabola, without end effects of its own."""
     return Scene(
         Body.half_plane(datum=50.0, **lower),
@@ -155,7 +159,11 @@ def test_an_orthotropic_body_is_an_isotropic_one_with_other_friction(seed: int) 
     kappa = (1 + beta) / (1 - beta)
     twin = {"shear_modulus": (kappa + 1) / (4 * a), "poisson_ratio": (3 - kappa) / 4}
     mu, force = 0.4, 200.0
-    loads = [Step(normal_force=force), Step(tangential_force=0.2 * force), Step(tangential_force=-0.1 * force, normal_force=0.8 * force)]
+    loads = [
+        Step(normal_force=force),
+        Step(tangential_force=0.2 * force),
+        Step(tangential_force=-0.1 * force, normal_force=0.8 * force),
+    ]
     other = [Step(normal_force=step.normal_force, tangential_force=factor * (step.tangential_force or 0.0)) for step in loads]
     other[0] = Step(normal_force=force)
     other[1] = Step(tangential_force=factor * 0.2 * force)
@@ -175,9 +183,14 @@ def test_an_orthotropic_body_is_an_isotropic_one_with_other_friction(seed: int) 
 def test_an_isotropic_material_by_its_compliances_is_isotropic(plane: str, angle: float) -> None:
     """At any angle, in both planes, with all stresses: no digits are lost where the roots coincide."""
     e, nu = 70e3, 0.33
-    compliances = [1 / e, -nu / e, 1 / e, 0.0, 0.0, 2 * (1 + nu) / e] + ([-nu / e, -nu / e, 1 / e, 0.0] if plane == "strain" else [])
+    compliances = [1 / e, -nu / e, 1 / e, 0.0, 0.0, 2 * (1 + nu) / e] + (
+        [-nu / e, -nu / e, 1 / e, 0.0] if plane == "strain" else []
+    )
     results = []
-    for lower in ({"youngs_modulus": e, "poisson_ratio": nu}, {"elasticity": "anisotropic", "compliances": compliances, "axis_angle": angle}):
+    for lower in (
+        {"youngs_modulus": e, "poisson_ratio": nu},
+        {"elasticity": "anisotropic", "compliances": compliances, "axis_angle": angle},
+    ):
         scene = Scene(
             Body.half_plane(datum=50.0, yield_strength=300.0, **lower),
             Body.disk(60.0, rigid=True),
@@ -196,7 +209,9 @@ def test_an_isotropic_material_by_its_compliances_is_isotropic(plane: str, angle
     x, y = np.linspace(-2.0, 2.0, 9), np.array([0.0, -0.05, -0.3, -2.0])[:, None]
     fields = [mfv.stress.stress(result, x, y) for result in results]
     for name in ("sigma_xx", "sigma_yy", "sigma_xy", "sigma_zz", "von_mises"):
-        np.testing.assert_allclose(fields[1][name], fields[0][name], rtol=0, atol=1e-10 * np.max(np.abs(fields[0][name])), err_msg=name)
+        np.testing.assert_allclose(
+            fields[1][name], fields[0][name], rtol=0, atol=1e-10 * np.max(np.abs(fields[0][name])), err_msg=name
+        )
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -259,14 +274,26 @@ def test_stresses_in_the_upper_body_are_those_turned_by_half_a_turn() -> None:
     ("keys", "plane", "what"),
     [
         ({"elasticity": "orthotropic"}, "strain", "youngs_modulus_1 is missing"),
-        ({"elasticity": "orthotropic", **CARBON, "poisson_ratio": 0.3}, "strain", "poisson_ratio=0.3: has no effect for a half_plane with"),
+        (
+            {"elasticity": "orthotropic", **CARBON, "poisson_ratio": 0.3},
+            "strain",
+            "poisson_ratio=0.3: has no effect for a half_plane with",
+        ),
         ({"elasticity": "orthotropic", **CARBON}, "stress", "youngs_modulus_3=10000: has no effect with plane='stress'"),
         ({"elasticity": "orthotropic", **CARBON, "poisson_ratio_12": 4.0}, "strain", "poisson_ratio_12=4: no such material"),
         ({"elasticity": "anisotropic"}, "strain", "compliances is missing"),
-        ({"elasticity": "anisotropic", "compliances": [1.0, 0.0, 1.0, 0.0, 0.0, 2.0]}, "strain", "must be ten numbers in plane strain"),
+        (
+            {"elasticity": "anisotropic", "compliances": [1.0, 0.0, 1.0, 0.0, 0.0, 2.0]},
+            "strain",
+            "must be ten numbers in plane strain",
+        ),
         ({"elasticity": "anisotropic", "compliances": [1.0] * 10}, "stress", "must be six numbers in plane stress"),
         ({"elasticity": "anisotropic", "compliances": [1.0, 1.1, 1.0, 0.0, 0.0, 2.0]}, "stress", "no such material"),
-        ({"youngs_modulus": 1.0, "poisson_ratio": 0.3, "axis_angle": 3.0}, "strain", "axis_angle=3: has no effect for a half_plane"),
+        (
+            {"youngs_modulus": 1.0, "poisson_ratio": 0.3, "axis_angle": 3.0},
+            "strain",
+            "axis_angle=3: has no effect for a half_plane",
+        ),
     ],
 )
 def test_what_does_not_fit_is_refused(keys: dict[str, Any], plane: str, what: str) -> None:

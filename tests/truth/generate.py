@@ -10,7 +10,6 @@ import numpy as np
 
 from .problem import Keys, Problem
 
-
 #: From this seed on some bodies are anisotropic; the numbers of smaller seeds do not change.
 ANISOTROPIC = 200_000
 

@@ -143,8 +143,8 @@ contains
                  (scene%upper%circular() .or. scene%upper%is_straight()) .and. scene%curvature() > 0.0_wp
    end function is_hertz
 
-   !> Whether the near field of both bodies together has no coupling: they are of one material. Different shapes couple by the order of
-   !> a/R only.
+   !> Whether the near field of both bodies together has no coupling: they are of one material. Different shapes couple by the
+   !> order of a/R only.
    pure logical function alike(scene)
       type(scene_type), intent(in) :: scene
       real(wp), parameter :: none = 1.0e-12_wp

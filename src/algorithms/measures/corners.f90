@@ -1,11 +1,12 @@
 !> Convex corners of the undeformed surfaces in contact, such as the tip of a wedge, where the pressure has no limit.
 !>
-!> Where the slope of the surfaces jumps by J the pressure is -(m J/pi) ln|x| and smooth terms, m = scene%modulus() (wedge: Johnson
-!> 1985, section 5.2). The stress along the surface is c p - a tau + b T - d N, N and T the integrals of p/(t - x) dt/pi and
-!> tau/(t - x) dt/pi (surface_stress_of in mfv_interior_half_plane). The equations of mfv_near_field, A N + M T + B tau the slope of the
-!> gap and At T + M N - B p the difference e of the strains, bounded both, give N and T where p is not: where the surfaces stick T = B
-!> p/(At - M^2/A) and N = -(M/A) T, where they slip with tau = f p, N = -B f p/(A + M f) and T = f N. An isotropic surface is compressed by
-!> 1 - 2 beta and 1 + 2 beta f^2 times p, without limit; others, such as auxetic ones that stick, can be stretched.
+!> Where the slope of the surfaces jumps by J the pressure is -(m J/pi) ln|x| and smooth terms, m = scene%modulus() (wedge:
+!> Johnson 1985, section 5.2). The stress along the surface is c p - a tau + b T - d N, N and T the integrals of p/(t - x) dt/pi
+!> and tau/(t - x) dt/pi (surface_stress_of in mfv_interior_half_plane). The equations of mfv_near_field, A N + M T + B tau the
+!> slope of the gap and At T + M N - B p the difference e of the strains, bounded both, give N and T where p is not: where the
+!> surfaces stick T = B p/(At - M^2/A) and N = -(M/A) T, where they slip with tau = f p, N = -B f p/(A + M f) and T = f N. An
+!> isotropic surface is compressed by 1 - 2 beta and 1 + 2 beta f^2 times p, without limit; others, such as auxetic ones that
+!> stick, can be stretched.
 module mfv_corners
    use mfv_compliance, only: block_up, block_wt
    use mfv_contact_model, only: contact_model_type
@@ -20,8 +21,8 @@ module mfv_corners
    private
    public :: corner_type, find_corner, corners_of, is_stretched_at
 
-   !> A corner at the arc length `place` from the origin of x, near a node, and the distance within which tractions between the nodes
-   !> are not resolved; lengths.
+   !> A corner at the arc length `place` from the origin of x, near a node, and the distance within which tractions between the
+   !> nodes are not resolved; lengths.
    type :: corner_type
       integer :: node = 0
       real(wp) :: place = 0.0_wp, reach = 0.0_wp

@@ -2,9 +2,10 @@
 !> where it is, and in which row.
 !>
 !> Largest stresses need a search in each state (mfv_stress_search), which costs more than a load segment. Estimates of them (1 %
-!> too small as a median, and less sensitive to slip zones of one or two nodes) find the state that is worth it. The surface stress
-!> follows from p, tau and the integrals of p/(t - x) dt and tau/(t - x) dt (mfv_interior_half_plane). At an edge of the contact both
-!> vanish as a root: in each interval they are taken as proportional to root((t - l)(r - t)), between the edges l and r, whose integrals are elementary.
+!> too small as a median, and less sensitive to slip zones of one or two nodes) find the state that is worth it. The surface
+!> stress follows from p, tau and the integrals of p/(t - x) dt and tau/(t - x) dt (mfv_interior_half_plane). At an edge of the
+!> contact both vanish as a root: in each interval they are taken as proportional to root((t - l)(r - t)), between the edges l and
+!> r, whose integrals are elementary.
 module mfv_load_extremes
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use mfv_body, only: body_type
@@ -375,7 +376,7 @@ contains
                angle(from + 1:to) = acos(max(-1.0_wp, min(1.0_wp, (patch%left + half - model%arc(from + 1:to) &
                                                                    + 0.5_wp*model%width(from + 1:to))/half)))
                angle(to + 1) = pi
-             associate (a => angle(from:to), b => angle(from + 1:to + 1), force => traction(from:to)*model%width(from:to))
+               associate (a => angle(from:to), b => angle(from + 1:to + 1), force => traction(from:to)*model%width(from:to))
                   root = 0.5_wp*half*(b - a - sin(b)*cos(b) + sin(a)*cos(a))
                   where (root > 0.0_wp) root = force/root*(sin(b) - sin(a) - side*(b - a))
                end associate

@@ -297,8 +297,8 @@ contains
       both = pair_of(self%lower%elasticity%near_field(), self%upper%elasticity%near_field())
    end function near_field
 
-   !> Contact modulus of both bodies, force/length^2: 1/A of mfv_near_field, the sum of those of the elastic bodies, (kappa + 1)/(4 G)
-   !> if isotropic (A in dissertation eq. 6.1, corrected for a misprint). Zero if a body has no material.
+   !> Contact modulus of both bodies, force/length^2: 1/A of mfv_near_field, the sum of those of the elastic bodies, (kappa +
+   !> 1)/(4 G) if isotropic (A in dissertation eq. 6.1, corrected for a misprint). Zero if a body has no material.
    pure real(wp) function modulus(self)
       class(scene_type), intent(in) :: self
       type(near_field_type) :: both

@@ -30,8 +30,8 @@ module mfv_krylov_preconditioner
       private
       !> Entries by distance, length^3/force in the units of the system.
       real(wp), allocatable :: kernel(:)
-      !> C_ut is the kernel times this. What the entries of C_wp and C_ut next to the diagonal, and all of those of half-planes, have
-      !> beyond these.
+      !> C_ut is the kernel times this. What the entries of C_wp and C_ut next to the diagonal, and all of those of half-planes,
+      !> have beyond these.
       real(wp) :: shear_ratio = 1.0_wp
       real(wp), public :: constant = 0.0_wp, shear_constant = 0.0_wp
       logical :: is_homogeneous = .false.
