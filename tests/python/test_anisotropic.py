@@ -4,6 +4,7 @@ an orthotropic one, stresses that satisfy compatibility, closed forms."""
 from __future__ import annotations
 
 import math
+import os
 from typing import Any
 
 import numpy as np
@@ -67,11 +68,11 @@ def matrix(compliance: Numbers, x: Numbers, width: float, datum: float) -> Numbe
 
 
 def random_material(draw: np.random.Generator) -> dict[str, float]:
-    return {
-        "youngs_modulus_1": 10 ** draw.uniform(3, 5), "youngs_modulus_2": 10 ** draw.uniform(3, 5), "youngs_modulus_3": 1e4,
-        "poisson_ratio_12": draw.uniform(-0.1, 0.2), "poisson_ratio_13": draw.uniform(0, 0.1), "poisson_ratio_23": draw.uniform(0, 0.1),
-        "shear_modulus_12": 10 ** draw.uniform(3, 4.5), "axis_angle": draw.uniform(-90, 90),
-    }  # fmt: skip
+    moduli = [10 ** draw.uniform(3, 5), 10 ** draw.uniform(3, 5), 10 ** draw.uniform(3, 5)]
+    keys = {f"youngs_modulus_{axis + 1}": modulus for axis, modulus in enumerate(moduli)}
+    for one, other in ((0, 1), (0, 2), (1, 2)):
+        keys[f"poisson_ratio_{one + 1}{other + 1}"] = draw.uniform(-0.3, 0.5) * math.sqrt(moduli[one] / moduli[other])
+    return {**keys, "shear_modulus_12": 10 ** draw.uniform(3, 4.5), "axis_angle": draw.uniform(-90, 90)}
 
 
 def anisotropic(keys: dict[str, float]) -> dict[str, Any]:
@@ -89,7 +90,7 @@ def steps(draw: np.random.Generator, force: float, mu: float) -> list[Step]:
     return loads
 
 
-@pytest.mark.parametrize("seed", range(24))
+@pytest.mark.parametrize("seed", range(300 if os.environ.get("MFV_DEEP") else 24))
 def test_a_dense_matrix_of_strohs_eigenvectors_gives_the_same(seed: int) -> None:
     """Random materials at any angle, one or both bodies elastic, all couplings: tractions to round-off, the same events."""
     draw = np.random.default_rng(seed)
