@@ -290,6 +290,7 @@ class Mesh(KeyGroup):
     nodes: int | None = None
     half_width: float | None = None
     half_angle: float | None = None
+    period: float | None = None
     refine: Literal["none", "edges"] | None = None
     ends: Positions | None = None
     gap: Literal["exact", "parabolic"] | None = None

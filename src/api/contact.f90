@@ -465,7 +465,7 @@ contains
       type(scene_type), intent(in) :: scene
       type(error_type), allocatable, intent(out) :: error
       character(*), parameter :: why_not = ': it must be elastic and deform like a half-plane, not a disk, hole or matrix'
-      integer :: wrong
+      integer :: i, wrong
       logical :: strains(motion_count)
 
       strains = motions%is_stress .and. step%control /= control_keep
@@ -481,6 +481,8 @@ contains
          call set_error(error, MFV_BAD_ARGUMENT, 'the lower body cannot have a bulk stress'//why_not)
       else if (strains(motion_upper_bulk) .and. .not. scene%can_have_bulk_stress(.true.)) then
          call set_error(error, MFV_BAD_ARGUMENT, 'the upper body cannot have a bulk stress'//why_not)
+      else if (any([(step%control(i) /= control_keep .and. .not. scene%can_repeat(i), i=1, motion_count)])) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'surfaces that repeat (period in &mesh) have no rotation and no bulk stress')
       else if (.not. all(ieee_is_finite(step%target))) then
          call set_error(error, MFV_BAD_ARGUMENT, 'a target is not finite')
       else if (wrong > 0) then

@@ -50,6 +50,7 @@ contains
       flexibility = 0.0_wp
       by_shear = 0.0_wp
       self%is_homogeneous = .true.
+      self%is_logarithmic = .true.
       do i = 1, 2
          if (.not. self%deforms(i)) cycle
          associate (body => self%body(i)%compliance)
@@ -61,6 +62,7 @@ contains
             flexibility = flexibility + 1.0_wp/body%modulus
             by_shear = by_shear + body%shear_ratio/body%modulus
             self%is_homogeneous = self%is_homogeneous .and. body%is_homogeneous
+            self%is_logarithmic = self%is_logarithmic .and. body%is_logarithmic
          end associate
       end do
       self%modulus = 1.0_wp/flexibility

@@ -34,6 +34,8 @@ module mfv_compliance
       !> Whether it is the same everywhere along the surface: blocks depend on the distance only, and C_ut is C_wp times
       !> `shear_ratio`, up to a constant. Half-planes in equal intervals.
       logical :: is_homogeneous = .false.
+      !> Whether it is then the logarithm of the distance and a constant: not on a surface that repeats.
+      logical :: is_logarithmic = .false.
       !> C_ut over C_wp next to a load.
       real(wp) :: shear_ratio = 1.0_wp
       !> Reals stored for the blocks that exist.

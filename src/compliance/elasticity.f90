@@ -31,6 +31,8 @@ module mfv_elasticity
       integer :: kernel = kernel_exact, harmonics = 0
       !> Matrix: surface length of each node, and displacements by nodal forces.
       real(wp), allocatable :: width(:), matrix(:, :)
+      !> Half-plane: length after which the surface repeats; 0: it does not.
+      real(wp) :: period = 0.0_wp
    contains
       procedure :: is_circle
       procedure :: is_matrix
@@ -93,7 +95,7 @@ contains
          allocate (compliance, source=new_matrix_compliance(self%matrix, self%width, coupling, tangential))
       case default
          allocate (compliance, source=new_half_plane(self%near_field(), nodes, interval, self%datum, coupling, tangential, &
-                                                     ends))
+                                                     ends, self%period))
       end select
       if (.not. present(ends)) return
       call move_alloc(compliance, graded)

@@ -9,6 +9,9 @@
 !> and a unit shear u = At L and w = M L + B h step_kernel(x/h). A half-plane has no rigid-body constraint: displacements are
 !> measured from the surface points at the distance D (`datum`), where L of a concentrated force vanishes.
 !>
+!> On a surface that repeats after the length l the logarithm is ln|sin(pi x/l) l/(pi D)| and the step sgn x - 2 x/l, which have no
+!> mean strain: what they add is smooth, integrated by quadrature.
+!>
 !> Equation A.10 in print has -A/(2 pi) with A = 2(1-nu^2)/E in front of *squared* logarithms, too large by a factor of two;
 !> the signs of the coupling terms in A.1/A.2 and A.11/A.13 contradict each other. The signs here satisfy reciprocity,
 !> C_wt(i,j) = C_up(j,i), and surface points move towards a pressure.
@@ -17,10 +20,13 @@ module mfv_half_plane
    use mfv_kernel_compliance, only: kernel_compliance_type
    use mfv_kinds, only: pi, wp
    use mfv_near_field, only: near_field_type
+   use mfv_quadrature, only: gauss_points
    use mfv_toeplitz, only: toeplitz_type, new_toeplitz
    implicit none
    private
    public :: half_plane_type, new_half_plane, log_kernel, step_kernel
+
+   integer, parameter :: points = 12
 
    !> Toeplitz blocks: one entry per distance.
    type, extends(kernel_compliance_type) :: half_plane_type
@@ -29,6 +35,8 @@ module mfv_half_plane
       !> C_wp by distance; C_wt and C_up are it times M/A, plus and minus the `cross` entries by distance (odd).
       real(wp), allocatable :: direct(:)
       real(wp) :: mixed_ratio = 0.0_wp, cross = 0.0_wp
+      !> Quadrature over an interval of what a surface that repeats adds.
+      real(wp) :: point(points) = 0.0_wp, weight(points) = 0.0_wp
       !> Products with the first.
       type(toeplitz_type) :: operator
    contains
@@ -47,14 +55,17 @@ contains
 
    !> Half-plane with `nodes` intervals of width `interval` (length). `datum`: distance at which displacements are measured,
    !> length. `coupling`: see mfv_compliance. `tangential`: friction can act; otherwise only C_wp is built. `ends`: of unequal
-   !> intervals, of which `interval` is the mean, length, shape (nodes + 1); such a body has entries only.
-   type(half_plane_type) function new_half_plane(constants, nodes, interval, datum, coupling, tangential, ends) result(self)
+   !> intervals, of which `interval` is the mean, length, shape (nodes + 1); such a body has entries only. `period`: see
+   !> mfv_kernel_compliance, by default 0.
+   type(half_plane_type) function new_half_plane(constants, nodes, interval, datum, coupling, tangential, ends, period) result(self)
       type(near_field_type), intent(in) :: constants
       integer, intent(in) :: nodes, coupling
       real(wp), intent(in) :: interval, datum
       logical, intent(in) :: tangential
-      real(wp), intent(in), optional :: ends(:)
+      real(wp), intent(in), optional :: ends(:), period
 
+      if (present(period)) self%period = period
+      call gauss_points(-1.0_wp, 1.0_wp, self%point, self%weight)
       self%interval = interval
       self%datum = datum
       self%modulus = constants%modulus()
@@ -64,6 +75,7 @@ contains
       self%cross = 0.5_wp*constants%coupling*interval
       self%nodes = nodes
       self%is_homogeneous = .not. present(ends)
+      self%is_logarithmic = self%is_homogeneous .and. .not. self%period > 0.0_wp
       if (present(ends)) then
          call self%grade(ends, odd=[.false., .true.])
       else
@@ -90,8 +102,38 @@ contains
       real(wp) :: half
 
       half = width/2.0_wp
-      normal_displacement = half/(pi*self%modulus)*(2.0_wp*log(self%datum/half) + 2.0_wp - log_kernel(r))
+      if (.not. self%period > 0.0_wp) then
+         normal_displacement = half/(pi*self%modulus)*(2.0_wp*log(self%datum/half) + 2.0_wp - log_kernel(r))
+      else
+         associate (distance => abs(r*half) - self%period*anint(abs(r*half)/self%period))
+            normal_displacement = half/(pi*self%modulus)*(2.0_wp*log(self%datum/half) + 2.0_wp - log_kernel(distance/half) &
+                                                          - of_images(self, distance/self%period, half/self%period))
+         end associate
+      end if
    end function normal_displacement
+
+   !> Integral of ln(sin(pi x)/(pi x)) over the interval of half the width `half` around `distance` (over the period), over `half`.
+   pure real(wp) function of_images(self, distance, half) result(total)
+      class(half_plane_type), intent(in) :: self
+      real(wp), intent(in) :: distance, half
+      real(wp) :: x
+      integer :: i
+
+      total = 0.0_wp
+      do i = 1, points
+         x = pi*(distance + half*self%point(i))
+         if (abs(x) > 0.0_wp) total = total + self%weight(i)*log(sin(x)/x)
+      end do
+   end function of_images
+
+   !> The step sgn x, or that of a surface that repeats, averaged over the interval of the width `width` at a signed `distance`.
+   elemental real(wp) function step(self, distance, width)
+      class(half_plane_type), intent(in) :: self
+      real(wp), intent(in) :: distance, width
+
+      step = step_kernel(2.0_wp*distance/width)
+      if (self%period > 0.0_wp) step = step - 2.0_wp*distance/self%period
+   end function step
 
    !> See mfv_kernel_compliance.
    pure subroutine kernels_at(self, distance, width, kernels)
@@ -100,7 +142,7 @@ contains
       real(wp), intent(out) :: kernels(:)
 
       kernels(direct_kernel) = normal_displacement(self, 2.0_wp*distance/width, width)
-      kernels(cross_kernel) = self%cross*(width/self%interval)*step_kernel(2.0_wp*distance/width)
+      kernels(cross_kernel) = self%cross*(width/self%interval)*step(self, distance, width)
    end subroutine kernels_at
 
    !> See mfv_compliance.
@@ -119,20 +161,20 @@ contains
       integer, intent(in) :: block, rows(:), columns(:)
       real(wp), intent(out) :: matrix(:, :)
       !> Part of the first and of the second kernel in each block.
-      real(wp) :: direct(4), step(4)
+      real(wp) :: direct(4), odd(4)
       integer :: j
 
       direct([block_wp, block_wt, block_up, block_ut]) = [1.0_wp, self%mixed_ratio, self%mixed_ratio, self%shear_ratio]
-      step([block_wp, block_wt, block_up, block_ut]) = [0.0_wp, 1.0_wp, -1.0_wp, 0.0_wp]
+      odd([block_wp, block_wt, block_up, block_ut]) = [0.0_wp, 1.0_wp, -1.0_wp, 0.0_wp]
       matrix = 0.0_wp
       do j = 1, size(columns)
          if (allocated(self%mean)) then
             if (abs(direct(block)) > 0.0_wp) matrix(:, j) = direct(block)*self%mean(rows, columns(j), direct_kernel)
-            if (abs(step(block)) > 0.0_wp) matrix(:, j) = matrix(:, j) + step(block)*self%mean(rows, columns(j), cross_kernel)
+            if (abs(odd(block)) > 0.0_wp) matrix(:, j) = matrix(:, j) + odd(block)*self%mean(rows, columns(j), cross_kernel)
          else
             if (abs(direct(block)) > 0.0_wp) matrix(:, j) = direct(block)*self%direct(abs(rows - columns(j)) + 1)
-            if (abs(step(block)) > 0.0_wp) &
-               matrix(:, j) = matrix(:, j) + step(block)*self%cross*step_kernel(2.0_wp*(rows - columns(j)))
+            if (abs(odd(block)) > 0.0_wp) &
+               matrix(:, j) = matrix(:, j) + odd(block)*self%cross*step(self, self%interval*(rows - columns(j)), self%interval)
          end if
       end do
    end subroutine entries
@@ -145,8 +187,8 @@ contains
 
       by_block(:, [block_wt, block_up]) = 0.0_wp
       call self%operator%multiply(pressure, by_block(:, block_wp), shear, by_block(:, block_ut))
-      if (self%has_block(block_wt)) call multiply_steps(self%cross, shear, by_block(:, block_wt))
-      if (self%has_block(block_up)) call multiply_steps(-self%cross, pressure, by_block(:, block_up))
+      if (self%has_block(block_wt)) call multiply_steps(self, self%cross, shear, by_block(:, block_wt))
+      if (self%has_block(block_up)) call multiply_steps(self, -self%cross, pressure, by_block(:, block_up))
       if (abs(self%mixed_ratio) > 0.0_wp) then
          if (self%has_block(block_wt)) by_block(:, block_wt) = by_block(:, block_wt) + self%mixed_ratio*by_block(:, block_ut)
          if (self%has_block(block_up)) by_block(:, block_up) = by_block(:, block_up) + self%mixed_ratio*by_block(:, block_wp)
@@ -163,14 +205,16 @@ contains
 
       normal = 0.0_wp
       if (.not. self%has_block(block_wt)) return
-      call multiply_steps(self%cross, shear, normal)
+      call multiply_steps(self, self%cross, shear, normal)
       if (.not. abs(self%mixed_ratio) > 0.0_wp) return
       call self%operator%multiply(shear, direct, 0.0_wp*shear, none)
       normal = normal + self%mixed_ratio*direct
    end subroutine normal_by_shear
 
-   !> displacement(i) = cross (sum of tractions left of i - sum right of i).
-   pure subroutine multiply_steps(cross, traction, displacement)
+   !> displacement(i) = cross (sum of tractions left of i - sum right of i), less cross 2/period (sum of tractions times their signed
+   !> distances from i) on a surface that repeats.
+   pure subroutine multiply_steps(self, cross, traction, displacement)
+      class(half_plane_type), intent(in) :: self
       real(wp), intent(in) :: cross, traction(:)
       real(wp), intent(out) :: displacement(:)
       real(wp) :: left, right
@@ -187,6 +231,9 @@ contains
          displacement(i) = displacement(i) - cross*right
          right = right + traction(i)
       end do
+      if (.not. self%period > 0.0_wp) return
+      left = sum([(i*traction(i), i=1, n)])
+      displacement = displacement - 2.0_wp*cross*self%interval/self%period*([(i*right, i=1, n)] - left)
    end subroutine multiply_steps
 
    !> (r+1) ln|r+1| - (r-1) ln|r-1|, the normal displacement by a box traction, to a relative error near epsilon for every r

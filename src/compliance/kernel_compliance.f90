@@ -15,6 +15,8 @@ module mfv_kernel_compliance
    public :: kernel_compliance_type
 
    type, abstract, extends(compliance_type) :: kernel_compliance_type
+      !> Length after which the surface repeats; 0: it does not.
+      real(wp) :: period = 0.0_wp
       !> Unequal intervals: their widths, length, shape (nodes), and the kernels, shape (nodes, nodes, kernels): mean over the
       !> first interval by a unit traction on the second. Unallocated for equal intervals.
       real(wp), allocatable :: width(:), mean(:, :, :)
@@ -50,6 +52,7 @@ contains
       real(wp), intent(in) :: ends(:)
       logical, intent(in) :: odd(:)
       type(rule_type) :: rules(touching_points)
+      real(wp) :: to_nearest
       integer :: i, j, n
 
       n = size(ends) - 1
@@ -62,12 +65,16 @@ contains
       allocate (self%mean(n, n, size(odd)))
       do j = 1, n
          do i = 1, j
+            ! The nearest image of the second interval, next to the first one across the ends of a period.
+            to_nearest = 0.0_wp
+            if (self%period > 0.0_wp) &
+               to_nearest = -self%period*anint((ends(j) + ends(j + 1) - ends(i) - ends(i + 1))/(2.0_wp*self%period))
             associate (forward => self%mean(i, j, :), backward => self%mean(j, i, :))
                if (self%width(i) <= self%width(j)) then
-                  call find_mean(self, ends(i:i + 1), ends(j:j + 1), rules, forward)
+                  call find_mean(self, ends(i:i + 1), ends(j:j + 1) + to_nearest, rules, forward)
                   backward = merge(-1.0_wp, 1.0_wp, odd)*forward*(self%width(i)/self%width(j))
                else
-                  call find_mean(self, ends(j:j + 1), ends(i:i + 1), rules, backward)
+                  call find_mean(self, ends(j:j + 1) + to_nearest, ends(i:i + 1), rules, backward)
                   forward = merge(-1.0_wp, 1.0_wp, odd)*backward*(self%width(j)/self%width(i))
                end if
                if (i == j) where (odd) forward = 0.0_wp

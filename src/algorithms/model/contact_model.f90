@@ -123,13 +123,15 @@ contains
       integer :: circle
 
       nodes = scene%mesh%nodes
-      growing = .not. (allocated(scene%mesh%ends) .or. scene%lower%is_matrix())
+      growing = .not. (allocated(scene%mesh%ends) .or. scene%lower%is_matrix() .or. scene%mesh%period > 0.0_wp)
       if (allocated(scene%mesh%ends)) then
          nodes = size(scene%mesh%ends) - 1
          interval = (scene%mesh%ends(nodes + 1) - scene%mesh%ends(1))/nodes
       else if (scene%lower%is_matrix()) then
          nodes = size(scene%lower%position)
          interval = sum(scene%lower%elasticity%width)/nodes
+      else if (scene%mesh%period > 0.0_wp) then
+         interval = scene%mesh%period/nodes
       else if (scene%mesh%whole_circle) then
          interval = 2.0_wp*pi*scene%arc_radius()/nodes
          circle = nodes
@@ -148,7 +150,7 @@ contains
    pure logical function can_choose_mesh(scene)
       type(scene_type), intent(in) :: scene
 
-      can_choose_mesh = scene%lower%is_matrix() .or. allocated(scene%mesh%ends) .or. &
+      can_choose_mesh = scene%lower%is_matrix() .or. allocated(scene%mesh%ends) .or. scene%mesh%period > 0.0_wp .or. &
                         scene%mesh%half_width > 0.0_wp .or. scene%mesh%whole_circle .or. &
                         min(scene%lower%half_extent(), scene%upper%half_extent()) < huge(1.0_wp)
       if (.not. can_choose_mesh) can_choose_mesh = largest_half_width(scene, huge(1.0_wp)) > 0.0_wp

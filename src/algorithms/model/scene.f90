@@ -8,7 +8,7 @@ module mfv_scene
    use mfv_interior, only: has_interior, interior_type, new_interior
    use mfv_kinds, only: pi, wp
    use mfv_material, only: plane_strain
-   use mfv_motions, only: motions, motion_approach, motion_count, control_keep, control_force, control_displacement
+   use mfv_motions, only: motions, motion_approach, motion_count, motion_rotation, control_keep, control_force, control_displacement
    use mfv_profile_sampling, only: sufficient_interval
    use mfv_surface_tractions, only: zone_list_type
    use mfv_tolerances, only: visible
@@ -118,6 +118,8 @@ module mfv_scene
       logical :: parabolic = .false.
       !> Whether normals are radial instead of vertical: for a disk in a hole.
       logical :: radial = .false.
+      !> Length after which both surfaces and all loads repeat, about the origin of x; 0: they do not.
+      real(wp) :: period = 0.0_wp
    contains
       procedure :: nodes_for
    end type mesh_request_type
@@ -154,6 +156,7 @@ module mfv_scene
       procedure :: touchable
       procedure :: last_touchable
       procedure :: can_have_bulk_stress
+      procedure :: can_repeat
       procedure :: interior
    end type scene_type
 
@@ -381,7 +384,7 @@ contains
    end function x_of_arc
 
    !> Whether both bodies have a surface at an arc length (length) from the origin of x: on a circle up to 90 degrees; with radial
-   !> normals, where the radius of the hole meets the disk.
+   !> normals, where the radius of the hole meets the disk; of surfaces that repeat within one period.
    elemental logical function touchable(self, arc)
       class(scene_type), intent(in) :: self
       real(wp), intent(in) :: arc
@@ -395,6 +398,7 @@ contains
          touchable = self%lower%covers(x, self%mesh%parabolic) .and. self%upper%covers(x, self%mesh%parabolic)
       end if
       if (radius > 0.0_wp) touchable = touchable .and. abs(arc) < 0.5_wp*pi*radius
+      if (self%mesh%period > 0.0_wp) touchable = touchable .and. abs(arc) < 0.5_wp*self%mesh%period
    end function touchable
 
    !> `outside`, or the end of the surface between it and `inside` (by bisection); arc lengths.
@@ -429,6 +433,14 @@ contains
          can_have_bulk_stress = has_interior(self%lower) .and. .not. self%lower%deforms_as_circle()
       end if
    end function can_have_bulk_stress
+
+   !> Whether a motion displaces surfaces that repeat alike in every period: not a rotation or a bulk stress.
+   pure logical function can_repeat(self, motion)
+      class(scene_type), intent(in) :: self
+      integer, intent(in) :: motion
+
+      can_repeat = .not. self%mesh%period > 0.0_wp .or. .not. (motion == motion_rotation .or. motions(motion)%is_stress)
+   end function can_repeat
 
    !> The lower or `upper` body under tractions, see mfv_interior. With radial normals the angles of the nodes are common to both
    !> bodies and their forces are equal; arcs and tractions are not.

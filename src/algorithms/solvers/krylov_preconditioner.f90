@@ -34,7 +34,7 @@ module mfv_krylov_preconditioner
       !> have beyond these.
       real(wp) :: shear_ratio = 1.0_wp
       real(wp), public :: constant = 0.0_wp, shear_constant = 0.0_wp
-      logical :: is_homogeneous = .false.
+      logical :: is_logarithmic = .false.
       !> (Both allocatable: otherwise gfortran 12 does not free the components of the second.)
       type(block_type), allocatable :: contact, held
       !> Softness of the held nodes, shape (held), if any is nonzero; weights of the levels, shape (held, 0 to levels), and the
@@ -85,7 +85,7 @@ contains
          call compliance%entries(block_ut, [middle], [middle], near(:, 1:1))
          self%shear_constant = near(1, 1)/unit - self%shear_ratio*self%kernel(1)
       end if
-      self%is_homogeneous = compliance%is_homogeneous
+      self%is_logarithmic = compliance%is_logarithmic
       if (allocated(self%contact)) deallocate (self%contact, self%held)
       allocate (self%contact, self%held)
    end subroutine prepare
@@ -94,7 +94,7 @@ contains
    pure logical function is_exact(self)
       class(krylov_preconditioner_type), intent(in) :: self
 
-      is_exact = self%is_homogeneous .and. .not. self%soft
+      is_exact = self%is_logarithmic .and. .not. self%soft
       if (is_exact) is_exact = self%contact%inverse%group_count() <= 1 .and. self%held%inverse%group_count() <= 1
    end function is_exact
 

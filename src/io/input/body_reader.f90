@@ -394,10 +394,20 @@ contains
       call default_datum(scene, scene%lower, scene%upper, datum(1), of_case(1))
       call default_datum(scene, scene%upper, scene%lower, datum(2), of_case(2))
       do number = 1, 2
+         if (scene%mesh%period > 0.0_wp) then
+            datum(number) = scene%mesh%period
+            of_case(number) = .false.
+         end if
          if (.not. datum(number) > 0.0_wp) datum(number) = reader%real_value('mesh', 1, 'half_width')
          if (reader%has('body', number, 'datum')) then
             datum(number) = reader%real_value('body', number, 'datum')
             of_case(number) = .false.
+         end if
+         if (datum(number) <= scene%mesh%period/(2.0_wp*pi) .and. scene%mesh%period > 0.0_wp) then
+            call reader%complain('body', number, 'datum', 'must be above the period over 2 pi, '// &
+                                 to_text(scene%mesh%period/(2.0_wp*pi))//', with period in &mesh: a uniform pressure moves the '// &
+                                 'surface', error)
+            return
          end if
          if (datum(number) > 0.0_wp .or. reader%logical_value('body', number, 'rigid')) cycle
          call reader%complain('body', number, 'datum', 'is needed: the shapes have no length to derive it from, and neither a '// &

@@ -142,6 +142,8 @@ contains
       call keys%add('mesh', 'half_angle', kind_real, 'instead of half_width if a body is an elastic disk or hole: the '// &
                     'intervals cover this angle on either side; 180: the whole circle, of which only the nodes near the '// &
                     'contact are computed', unit='degrees', above=0.0_wp, upper=180.0_wp)
+      call keys%add('mesh', 'period', kind_real, 'instead of half_width: surfaces, loads and mesh repeat after this length '// &
+                    'along the surface, about x = 0; forces are those of one period', unit='length', above=0.0_wp)
       call keys%add('mesh', 'refine', kind_choice, 'edges: unequal intervals, small at the edges of contact and stick zones at '// &
                     'the ends of the steps, which are found on coarser meshes; without nodes their number follows from '// &
                     'accuracy in &solver', default='none', choices='none edges')

@@ -11,7 +11,7 @@ module mfv_case_reader
    use mfv_history_reader, only: read_history
    use mfv_key_reader
    use mfv_kinds, only: wp
-   use mfv_mesh_reader, only: read_mesh
+   use mfv_mesh_reader, only: read_mesh, read_period
    use mfv_namelist, only: group_type, parse_namelists
    use mfv_scene
    use mfv_simulation, only: states_steps
@@ -115,6 +115,7 @@ contains
       if (.not. allocated(error)) call read_body(reader, 1, scene%plane, scene%lower, error)
       if (.not. allocated(error)) call read_body(reader, 2, scene%plane, scene%upper, error)
       if (.not. allocated(error)) call check_pair(reader, scene, error)
+      if (.not. allocated(error)) call read_period(reader, scene, error)
       if (allocated(error)) return
       call read_friction(reader, scene, error)
       if (.not. allocated(error)) call read_steps(reader, scene, error)

@@ -7,7 +7,7 @@ module mfv_history_reader
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, control_keep, control_force, &
                           control_displacement, controlled_key
    use mfv_scene, only: scene_type, step_type
-   use mfv_step_reader, only: check_bulk_stress, last_pressing, read_steady_tolerance
+   use mfv_step_reader, only: check_motion, last_pressing, read_steady_tolerance
    use mfv_strings, only: add_text, has_word, lower_case, string_type, to_text
    use mfv_table_file, only: read_named_table
    implicit none
@@ -214,7 +214,7 @@ contains
          if (step%control(i) == control_keep) cycle
          key = 'file'
          if (.not. reader%has(group, 1, key)) key = trim(controlled_key(i, step%control(i)))
-         if (motions(i)%is_stress) call check_bulk_stress(reader, group, 1, i, scene, error)
+         call check_motion(reader, group, 1, i, key, scene, error)
          if (allocated(error)) return
          row = findloc(targets(i, :) < 0.0_wp, .true., dim=1)
          if (step%control(i) == control_force .and. motions(i)%pushes .and. row > 0) &

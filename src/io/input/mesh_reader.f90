@@ -11,7 +11,7 @@ module mfv_mesh_reader
    use mfv_tolerances, only: significant
    implicit none
    private
-   public :: read_mesh
+   public :: read_mesh, read_period
 
    !> Most unequal intervals, whose compliance is a full matrix.
    integer, parameter :: most_graded = 5000
@@ -44,7 +44,7 @@ contains
          call reader%complain('mesh', 1, 'normals', "must be 'vertical' with gap='parabolic'", error)
       end if
       if (allocated(error)) return
-      keys = list_of_words('nodes half_width half_angle ends refine')
+      keys = list_of_words('nodes half_width half_angle ends refine period')
       do i = 1, size(keys)
          if (.not. scene%lower%is_matrix() .or. .not. reader%has('mesh', 1, keys(i)%text)) cycle
          call reader%complain('mesh', 1, keys(i)%text, 'has no effect for a matrix, which has its own nodes; remove it', error)
@@ -78,6 +78,36 @@ contains
       if (.not. allocated(error)) call check_circle(reader, 2, scene, scene%upper, error)
    end subroutine read_mesh
 
+   !> The period of surfaces that repeat, which loads and datums depend on. Both bodies deform like half-planes.
+   subroutine read_period(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(inout) :: scene
+      type(error_type), allocatable, intent(out) :: error
+      type(string_type), allocatable :: others(:)
+      integer :: i
+
+      if (.not. reader%has('mesh', 1, 'period')) return
+      others = list_of_words('half_width half_angle')
+      do i = 1, size(others)
+         if (.not. reader%has('mesh', 1, others(i)%text)) cycle
+         call reader%complain('mesh', 1, others(i)%text, 'has no effect with period, which the intervals cover; '// &
+                              'remove one of them', error)
+         return
+      end do
+      if (reader%text_value('mesh', 1, 'normals') == 'radial') then
+         call reader%complain('mesh', 1, 'normals', "must be 'vertical' with period", error)
+      else if (scene%lower%is_matrix()) then
+         call reader%complain('mesh', 1, 'period', 'has no effect for a matrix; remove it', error)
+      else if (scene%lower%deforms_as_circle() .or. scene%upper%deforms_as_circle()) then
+         i = merge(1, 2, scene%lower%deforms_as_circle())
+         call reader%complain('body', i, 'shape', "needs elasticity='half_plane' with period in &mesh", error)
+      end if
+      if (allocated(error)) return
+      scene%mesh%period = reader%real_value('mesh', 1, 'period')
+      if (.not. scene%lower%rigid) scene%lower%elasticity%period = scene%mesh%period
+      if (.not. scene%upper%rigid) scene%upper%elasticity%period = scene%mesh%period
+   end subroutine read_period
+
    !> Whether the number of nodes follows from the accuracy: of equal intervals if the program also chooses their width.
    logical function program_chooses_nodes(reader, scene)
       type(reader_type), intent(in) :: reader
@@ -85,7 +115,7 @@ contains
       type(string_type), allocatable :: keys(:)
       integer :: i
 
-      keys = list_of_words('half_width half_angle ends')
+      keys = list_of_words('half_width half_angle ends period')
       program_chooses_nodes = .not. scene%lower%is_matrix() .and. .not. reader%has('mesh', 1, 'nodes')
       if (.not. scene%mesh%refined) program_chooses_nodes = program_chooses_nodes .and. &
                                                             .not. any([(reader%has('mesh', 1, keys(i)%text), i=1, size(keys))])
@@ -144,6 +174,8 @@ contains
       else if (place > 0) then
          call reader%complain('mesh', 1, 'ends', 'must increase; value '//to_text(place + 1)//', '// &
                               to_text(ends(place + 1))//', is not above the one before it, '//to_text(ends(place)), error)
+      else if (scene%mesh%period > 0.0_wp .and. maxval(abs(ends)) > 0.5_wp*scene%mesh%period*(1.0_wp + significant)) then
+         call reader%complain('mesh', 1, 'ends', 'must be within half a period, '//to_text(0.5_wp*scene%mesh%period), error)
       else if (maxval(abs(ends)) > 0.5_wp*pi*scene%arc_radius() .and. scene%arc_radius() > 0.0_wp) then
          call reader%complain('mesh', 1, 'ends', 'must not be beyond a quarter of the circle, '// &
                               to_text(0.5_wp*pi*scene%arc_radius()), error)

@@ -9,7 +9,7 @@ module mfv_step_reader
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: check_bulk_stress, last_pressing, read_steady_tolerance, read_steps
+   public :: check_motion, last_pressing, read_steady_tolerance, read_steps
 
 contains
 
@@ -29,8 +29,8 @@ contains
          associate (step => scene%steps(i))
             do j = 1, motion_count
                call read_target(reader, i, j, step%control(j), step%target(j), error)
-               if (motions(j)%is_stress .and. step%control(j) /= control_keep .and. .not. allocated(error)) &
-                  call check_bulk_stress(reader, 'step', i, j, scene, error)
+               if (step%control(j) /= control_keep .and. .not. allocated(error)) &
+                  call check_motion(reader, 'step', i, j, trim(controlled_key(j, step%control(j))), scene, error)
                if (j == motion_shift .and. .not. allocated(error)) call read_force_ratio(reader, i, scene, error)
                if (allocated(error)) return
             end do
@@ -103,10 +103,11 @@ contains
       end do
    end subroutine read_target
 
-   !> Error for a bulk stress (`motion`), a key of a group, in a body that does not deform like a half-plane.
-   subroutine check_bulk_stress(reader, group, number, motion, scene, error)
+   !> Error for a `motion`, by a key of a group, that the scene does not have: a bulk stress in a body that does not deform like a
+   !> half-plane, a rotation or a bulk stress of surfaces that repeat.
+   subroutine check_motion(reader, group, number, motion, key, scene, error)
       type(reader_type), intent(in) :: reader
-      character(*), intent(in) :: group
+      character(*), intent(in) :: group, key
       integer, intent(in) :: number, motion
       type(scene_type), intent(in) :: scene
       type(error_type), allocatable, intent(out) :: error
@@ -114,14 +115,18 @@ contains
       integer :: body
       logical :: upper
 
+      if (scene%mesh%period > 0.0_wp .and. .not. scene%can_repeat(motion)) then
+         call reader%complain(group, number, key, 'has no effect that repeats with the period in &mesh; remove one of them', error)
+         return
+      end if
       upper = motion == motion_upper_bulk
-      if (scene%can_have_bulk_stress(upper)) return
+      if (.not. motions(motion)%is_stress .or. scene%can_have_bulk_stress(upper)) return
       body = merge(2, 1, upper)
       kind = reader%text_value('body', body, 'shape')
       if (reader%logical_value('body', body, 'rigid')) kind = 'rigid '//kind
-      call reader%complain(group, number, trim(motions(motion)%key), 'the '//merge('upper', 'lower', upper)//' body is a '// &
+      call reader%complain(group, number, key, 'the '//merge('upper', 'lower', upper)//' body is a '// &
                            kind//'; a bulk stress needs an elastic half_plane, wedge, power, rounded_punch or profile', error)
-   end subroutine check_bulk_stress
+   end subroutine check_motion
 
    !> The tolerance of a step with cycles, from its key in a group. Error for one without effect.
    subroutine read_steady_tolerance(reader, group, number, step, error)
