@@ -96,6 +96,10 @@ contains
       if (upper) seen%pair = zones%pair%with_reversed_shear()
       if (radial) seen%turn = self%outward/body%radius
       call find_traction_elements(arc, width, pressure, self%side*shear, seen, longest, self%elements)
+      if (zones%joined) then
+         self%elements%sharp = .false.
+         self%elements%singular = .false.
+      end if
       associate (e => self%elements)
          if (self%body%deforms_as_circle()) then
             self%length = body%radius
@@ -108,7 +112,13 @@ contains
             self%circle = new_circle_load(body%is_disk(), body%elasticity%material%kolosov, e%from, e%to, &
                                           polar(self, radial, e%from, e%first), polar(self, radial, e%to, e%last))
          else
-            self%half_plane = new_half_plane_load(body%elasticity%material, e%from, e%to, e%first, e%last)
+            associate (material => body%elasticity%material, period => body%elasticity%period/self%length)
+               if (period > 0.0_wp) then
+                  self%half_plane = new_half_plane_load(material, e%from, e%to, e%first, e%last, period)
+               else
+                  self%half_plane = new_half_plane_load(material, e%from, e%to, e%first, e%last)
+               end if
+            end associate
          end if
       end associate
    end subroutine new_interior

@@ -21,6 +21,7 @@ module mfv_interior_half_plane
    use mfv_kinds, only: pi, wp
    use mfv_logarithms, only: log_ratio
    use mfv_material, only: material_type
+   use mfv_periodic_images, only: images_each_side, new_periodic_images, periodic_images_type
    implicit none
    private
    public :: half_plane_load_type, new_half_plane_load, line_load_stress, surface_stress_of
@@ -37,6 +38,10 @@ module mfv_interior_half_plane
       real(wp), allocatable :: from(:), to(:)
       complex(wp), allocatable :: first(:), last(:)
       type(element_tree_type) :: tree
+      !> Of a surface that repeats: the distant images of the elements, and the stress along the surface without which its mean strain
+      !> would not be zero, force/length^2.
+      type(periodic_images_type) :: images
+      real(wp) :: lateral = 0.0_wp
    contains
       procedure :: stress
       procedure :: surface_stress
@@ -46,11 +51,13 @@ module mfv_interior_half_plane
 contains
 
    !> Elements from `from` to `to`, lengths (ascending, for speed), with tractions p + i tau linear from `first` to `last`,
-   !> force/length^2; shapes (elements).
-   pure type(half_plane_load_type) function new_half_plane_load(material, from, to, first, last) result(self)
+   !> force/length^2; shapes (elements). `period`: length after which they repeat, about 0; by default not.
+   pure type(half_plane_load_type) function new_half_plane_load(material, from, to, first, last, period) result(self)
       type(material_type), intent(in) :: material
       real(wp), intent(in) :: from(:), to(:)
       complex(wp), intent(in) :: first(:), last(:)
+      real(wp), intent(in), optional :: period
+      integer :: m
 
       self%material = material
       self%root = material%roots()
@@ -58,7 +65,19 @@ contains
       self%to = to
       self%first = first
       self%last = last
-      self%tree = new_straight_tree(from, to, first, last)
+      if (present(period)) then
+         associate (images => [(m, m=-images_each_side, images_each_side)])
+            self%from = [(from + m*period, m=-images_each_side, images_each_side)]
+            self%to = [(to + m*period, m=-images_each_side, images_each_side)]
+            self%first = [(first, m=1, size(images))]
+            self%last = [(last, m=1, size(images))]
+         end associate
+         self%images = new_periodic_images(period, from, to, first, last)
+         associate (s => material%compliance)
+            self%lateral = (s(2)/s(1) - real(material%root_product, wp))*sum(0.5_wp*real(first + last, wp)*(to - from))/period
+         end associate
+      end if
+      self%tree = new_straight_tree(self%from, self%to, self%first, self%last)
    end function new_half_plane_load
 
    !> Stresses (sigma_xx, sigma_yy, sigma_xy), force/length^2, at the depth `depth` >= 0 below the surface point `x`, lengths. At
@@ -67,24 +86,70 @@ contains
       class(half_plane_load_type), intent(in) :: self
       real(wp), intent(in) :: x, depth
       real(wp) :: stress(3)
-      complex(wp) :: sums(4), mean, tilt, integral(2), difference(2), points(2)
-      integer :: near(2, self%tree%leaves()), number, j, k
+      complex(wp) :: sums(4), other(4), points(2)
 
       points = x - self%root*depth
+      if (.not. self%images%period > 0.0_wp) then
+         sums = near_sums(self, points)
+      else
+         points = self%images%move_into_period(points)
+         if (self%images%is_deep(points) .or. self%images%is_near(points)) then
+            sums = periodic_sums(self, points)
+         else
+            ! Points far from each other: each with its own number of periods.
+            sums = periodic_sums(self, spread(one_point(1), 1, 2))
+            other = periodic_sums(self, spread(one_point(2), 1, 2))
+            sums([2, 4]) = (other([1, 3]) - sums([1, 3]))/(points(2) - points(1))
+         end if
+      end if
+      stress = stress_of(self%material, self%root, depth, sums)
+      stress(1) = stress(1) + self%lateral
+
+   contains
+
+      pure complex(wp) function one_point(number)
+         integer, intent(in) :: number
+         complex(wp) :: moved(1)
+
+         moved = self%images%move_into_period(points(number:number))
+         one_point = moved(1)
+      end function one_point
+   end function stress
+
+   !> The integrals of stress_of over all images of a surface that repeats.
+   pure function periodic_sums(self, points) result(sums)
+      class(half_plane_load_type), intent(in) :: self
+      complex(wp), intent(in) :: points(2)
+      complex(wp) :: sums(4)
+
+      if (self%images%is_deep(points)) then
+         sums = self%images%whole(points)
+      else
+         sums = near_sums(self, points)
+         call self%images%add_distant(points, sums)
+      end if
+   end function periodic_sums
+
+   !> The integrals of stress_of over the elements, at two points at or below the surface.
+   pure function near_sums(self, points) result(sums)
+      class(half_plane_load_type), intent(in) :: self
+      complex(wp), intent(in) :: points(2)
+      complex(wp) :: sums(4), mean, tilt, integral(2), difference(2)
+      integer :: near(2, self%tree%leaves()), number, j, k
+
       call self%tree%find_distant(points, sums, near, number)
       do k = 1, number
          do j = near(1, k), near(2, k)
             mean = 0.5_wp*(self%first(j) + self%last(j))
             tilt = 0.5_wp*(self%last(j) - self%first(j))
-            call element_integrals(self%from(j) - x, self%to(j) - x, depth, self%root, integral, difference)
+            call element_integrals(self%from(j) - points, self%to(j) - points, integral, difference)
             sums(1) = sums(1) + mean*integral(1) + tilt*integral(2)
             sums(2) = sums(2) + mean*difference(1) + tilt*difference(2)
             sums(3) = sums(3) + aimag(mean)*integral(1) + aimag(tilt)*integral(2)
             sums(4) = sums(4) + aimag(mean)*difference(1) + aimag(tilt)*difference(2)
          end do
       end do
-      stress = stress_of(self%material, self%root, depth, sums)
-   end function stress
+   end function near_sums
 
    !> Stresses as of `stress` at the depth `depth` > 0, length, under line loads `normal` into the surface and `shear` to the right,
    !> force/length, at the distances `right` to the right, lengths; shapes (loads). Isotropic: Flamant (Johnson 1985, section 2.3).
@@ -129,21 +194,24 @@ contains
    pure real(wp) function surface_stress(self, x)
       class(half_plane_load_type), intent(in) :: self
       real(wp), intent(in) :: x
-      real(wp) :: here(2), sums(2)
+      real(wp) :: here(2), sums(2), place
       complex(wp) :: distant(4), surface(2)
       integer :: near(2, self%tree%leaves()), number, j, k
 
-      surface = x
+      place = x
+      if (self%images%period > 0.0_wp) place = x - self%images%period*anint(x/self%images%period)
+      surface = place
       call self%tree%find_distant(surface, distant, near, number)
+      if (self%images%period > 0.0_wp) call self%images%add_distant(surface, distant)
       here = 0.0_wp
       ! Along the surface integrals of p and of tau are real.
       sums = [real(distant(1), wp), real(distant(3), wp)]
       do k = 1, number
          do j = near(1, k), near(2, k)
-            call add_surface_element(self%from(j) - x, self%to(j) - x, self%first(j), self%last(j), sums, here)
+            call add_surface_element(self%from(j) - place, self%to(j) - place, self%first(j), self%last(j), sums, here)
          end do
       end do
-      surface_stress = surface_stress_of(self%material, here(1), here(2), sums(1)/pi, sums(2)/pi)
+      surface_stress = surface_stress_of(self%material, here(1), here(2), sums(1)/pi, sums(2)/pi) + self%lateral
    end function surface_stress
 
    !> sigma_xx at a surface point with the tractions `pressure` and `shear`, force/length^2, and the integrals of p/(t - x) dt/pi
@@ -161,13 +229,16 @@ contains
    pure complex(wp) function traction(self, x)
       class(half_plane_load_type), intent(in) :: self
       real(wp), intent(in) :: x
+      real(wp) :: place
       integer :: j
 
       traction = 0.0_wp
-      j = last_not_above(self%from, x)
+      place = x
+      if (self%images%period > 0.0_wp) place = x - self%images%period*anint(x/self%images%period)
+      j = last_not_above(self%from, place)
       if (j == 0) return
-      if (x > self%to(j) .or. .not. self%to(j) > self%from(j)) return
-      traction = self%first(j) + (self%last(j) - self%first(j))*((x - self%from(j))/(self%to(j) - self%from(j)))
+      if (place > self%to(j) .or. .not. self%to(j) > self%from(j)) return
+      traction = self%first(j) + (self%last(j) - self%first(j))*((place - self%from(j))/(self%to(j) - self%from(j)))
    end function traction
 
    !> Add the integrals of p/t and tau/t over an element from `left` to `right`, and p and tau at 0 if it is there: of two elements
@@ -209,43 +280,38 @@ contains
                             + [real(last - first, wp), aimag(last - first)]*tilted)
    end subroutine add_surface_element
 
-   !> Integrals over an element of 1/(t - z1) and u/(t - z1) dt, u from -1 to 1, z1 = -mu1 depth, and their divided differences
-   !> between z1 and z2 (zero on the surface, where they are not needed). `left`, `right`: its ends relative to the point; `depth`
-   !> of the point; `roots`: mu1 and mu2.
-   pure subroutine element_integrals(left, right, depth, roots, integral, difference)
-      real(wp), intent(in) :: left, right, depth
-      complex(wp), intent(in) :: roots(2)
+   !> Integrals over an element of 1/(t - z1) and u/(t - z1) dt, u from -1 to 1, and their divided differences between z1 and z2 (zero on
+   !> the surface, where they are not needed). `to_left`, `to_right`: its ends relative to both points, which are not above them.
+   pure subroutine element_integrals(to_left, to_right, integral, difference)
+      complex(wp), intent(in) :: to_left(2), to_right(2)
       complex(wp), intent(out) :: integral(2), difference(2)
       real(wp), parameter :: short = 0.04_wp
       real(wp) :: middle, half, from_left, from_right, below
-      complex(wp) :: place(2), to_left(2), to_right(2)
+      complex(wp) :: place(2)
 
-      middle = 0.5_wp*(left + right)
-      half = 0.5_wp*(right - left)
-      place = (-middle - roots*depth)/half
+      half = 0.5_wp*real(to_right(1) - to_left(1), wp)
+      place = -0.5_wp*(to_left + to_right)/half
       if (short*minval(real(place, wp)**2 + aimag(place)**2) > 1.0_wp) then
          call distant_integrals(half, place, integral, difference)
          return
       end if
-      ! From the points to the ends; of the first one along the surface and down.
-      to_left = left + roots*depth
-      to_right = right + roots*depth
       from_left = real(to_left(1), wp)
       from_right = real(to_right(1), wp)
+      middle = 0.5_wp*(from_left + from_right)
       below = aimag(to_left(1))
       integral(1) = cmplx(0.0_wp, -atan2(2.0_wp*half*below, below**2 + from_left*from_right), wp)
       difference = 0.0_wp
       if (min(from_left**2, from_right**2) + below**2 > (epsilon(1.0_wp)*half)**2) then
          integral(1) = integral(1) + 0.5_wp*log_ratio(from_left**2 + below**2, from_right**2 + below**2, &
                                                       2.0_wp*half*(from_left + from_right))
-         if (depth > 0.0_wp) difference(1) = 2.0_wp*half/(to_left(2)*to_right(1)) &
+         if (below > 0.0_wp) difference(1) = 2.0_wp*half/(to_left(2)*to_right(1)) &
                                              *log_over(2.0_wp*half*(place(2) - place(1))*half/(to_left(2)*to_right(1)))
       else
          ! At an end on the surface the singular logarithm cancels with that of the next element.
          integral(1) = cmplx(merge(1.0_wp, -1.0_wp, middle > 0.0_wp)*log(2.0_wp*half), -0.5_wp*pi, wp)
       end if
       integral(2) = place(1)*integral(1) + 2.0_wp
-      if (depth > 0.0_wp) difference(2) = integral(1)/half + place(2)*difference(1)
+      if (below > 0.0_wp) difference(2) = integral(1)/half + place(2)*difference(1)
    end subroutine element_integrals
 
    !> ln(1 + w)/w; 1 at 0.

@@ -166,6 +166,10 @@ contains
       if (interior%body%deforms_as_circle()) &
          beside = pack(beside, beside <= pi*interior%body%radius - max(abs(inside(1)), abs(inside(size(inside)))))
       places = [inside(1) - beside(size(beside):1:-1), inside, inside(size(inside)) + beside]
+      ! Beside the contact there is another one.
+      associate (period => interior%body%elasticity%period)
+         if (period > 0.0_wp) places = [-0.5_wp*period, pack(places, abs(places) < 0.5_wp*period), 0.5_wp*period]
+      end associate
    end function candidates
 
    !> Largest stress along the surface: the best local maxima of ascending points, refined between their neighbours by

@@ -47,7 +47,7 @@ contains
          if (.not. (force > 0.0_wp .and. scene%modulus() > 0.0_wp)) return
          if (model%compliance%elastic_block(block_wt) .and. model%tangential .and. .not. alike(scene)) return
          if (any(simulation%load_summary%controlled(motion_rotation + 1:))) return
-         if (any(abs(model%worn) > 0.0_wp)) return
+         if (any(abs(model%worn) > 0.0_wp) .or. scene%mesh%period > 0.0_wp) return
          if (simulation%load_summary%controlled(motion_rotation) .and. .not. (is_hertz(scene) .and. model%rolls())) return
          form%indenter = indenter_of(scene)
          if (.not. form%indenter%is_flat() .and. .not. (scene%lower%has_sharp_ends() .or. scene%upper%has_sharp_ends())) then

@@ -9,7 +9,7 @@ module mfv_surface_warnings
    use mfv_profile_sampling, only: negligible_pressure, pressure_of_wave
    use mfv_simulation, only: simulation_type
    use mfv_strings, only: add_text, string_type, to_text
-   use mfv_tolerances, only: significant
+   use mfv_tolerances, only: significant, visible
    implicit none
    private
    public :: warn_of_surface
@@ -68,6 +68,8 @@ contains
                                 to_text(corner(side))//': the contact ends at x = '//to_text(end_of(i, side), 4)// &
                                 ' instead; choose &mesh half_width and nodes accordingly, or omit half_width')
                else
+                  if (simulation%contact%model%scene%mesh%period > 0.0_wp .and. &
+                      abs(end_of(i, side)) > 0.5_wp*simulation%contact%model%scene%mesh%period*(1.0_wp - visible)) cycle
                   call add_text(warnings, 'the contact reaches the end of the surface of the '//name//' body, near x = '// &
                                 to_text(simulation%contact%model%x(i), 4)//' and cannot grow beyond it: tractions and '// &
                                 'stresses there are those at a sharp corner; extend the surface unless the corner is real')

@@ -355,8 +355,18 @@ contains
          integer, intent(in) :: from, to
          real(wp), intent(in) :: x
 
-         integral_over = sum(steps(from:to)*log(max(abs(ends(from:to) - x), tiny(1.0_wp))))
+         integral_over = sum(steps(from:to)*log(max(chord(ends(from:to) - x), tiny(1.0_wp))))
       end function integral_over
+
+      !> Magnitude of a distance; where the surface repeats, of which the logarithm is that of all images.
+      elemental real(wp) function chord(distance)
+         real(wp), intent(in) :: distance
+
+         chord = abs(distance)
+         associate (period => model%scene%mesh%period)
+            if (period > 0.0_wp) chord = abs(sin(pi*distance/period))*period/pi
+         end associate
+      end function chord
 
       !> The same over all patches at the left (-1) or right edge of one. In that patch t = c - a cos(angle): the integral over t
       !> of the root is a^2/2 (angle - sin cos), that of the root over t - x is a (sin - side angle).

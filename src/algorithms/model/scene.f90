@@ -470,6 +470,8 @@ contains
             zones%sharp(side, i) = ends_with_body(self, arc, width, zones%contact(side, i), 2*side - 3)
          end do
       end do
+      zones%joined = self%mesh%period > 0.0_wp
+      if (zones%joined) zones%joined = all(abs(pack(zones%contact, zones%sharp)) > 0.5_wp*self%mesh%period*(1.0_wp - visible))
       zones%contact = ratio*zones%contact
       if (self%coupling == coupling_full) zones%pair = self%near_field()
       if (present(fewest_elements)) zones%fewest_elements = fewest_elements
