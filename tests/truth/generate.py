@@ -10,8 +10,9 @@ import numpy as np
 
 from .problem import Keys, Problem
 
-#: From this seed on some bodies are anisotropic; the numbers of smaller seeds do not change.
+#: From these seeds on some bodies are anisotropic, and most surfaces repeat; the numbers of smaller seeds do not change.
 ANISOTROPIC = 200_000
+PERIODIC = 300_000
 
 
 class Draw:
@@ -63,6 +64,8 @@ def problem(seed: int) -> Problem:
     law = _add_friction(draw, made, sizes)
     loads = _add_loads(draw, made, sizes, law)
     mesh = _add_mesh(draw, made, sizes, law, loads)
+    if seed >= PERIODIC and made.labels["shape"] != "pin" and loads != "rotation" and not _has_bulk_stress(made):
+        _repeat(Draw(seed + 2**33), made, sizes)
     _add_solver(draw, made, law, mesh)
     made.one("output").update(states="steps", history="steps", error_estimate=True)
     made.labels.update(law=law, loads=loads, mesh=mesh)
@@ -465,6 +468,24 @@ def _add_mesh(draw: Draw, made: Problem, sizes: Sizes, law: str, loads: str) -> 
     if keys:
         made.groups.append(("mesh", keys))
     return kind
+
+
+def _repeat(draw: Draw, made: Problem, sizes: Sizes) -> None:
+    """Let the surfaces repeat after a few widths of the contact."""
+    if draw.chance(0.15):
+        return
+    period = sizes.half_width * (draw.between(2.2, 3.9) if made.labels["shape"] == "profile" else draw.between(2.1, 8.0))
+    if not made.has("mesh"):
+        made.groups.append(("mesh", {}))
+    keys = made.one("mesh")
+    keys.pop("half_width", None)
+    keys["period"] = period
+    if "ends" in keys and keys["ends"][-1] > 0.5 * period:
+        keys["ends"] = [end * 0.5 * period / keys["ends"][-1] for end in keys["ends"]]
+    for body in made.all("body"):
+        body.pop("datum", None)
+        if body["shape"] in ("disk", "hole") and not body.get("rigid"):
+            body.setdefault("elasticity", "half_plane")
 
 
 def _add_solver(draw: Draw, made: Problem, law: str, mesh: str) -> None:

@@ -26,7 +26,7 @@ ODD_LOADS = ("tangential_force", "shift", "force_ratio", "moment", "rotation")
 TURNED_LOADS = ("moment", "rotation")
 #: Powers of length and force in keys and columns; `coefficient` of a power depends on its exponent.
 DIMENSIONS = {
-    "radius": (1, 0), "half_width": (1, 0), "edge_radius": (1, 0), "datum": (1, 0), "ends": (1, 0), "approach": (1, 0),
+    "radius": (1, 0), "half_width": (1, 0), "edge_radius": (1, 0), "datum": (1, 0), "period": (1, 0), "ends": (1, 0), "approach": (1, 0),
     "shift": (1, 0), "weakening_distance": (1, 0), "x": (1, 0), "height": (1, 0),
     "shear_modulus": (-2, 1), "youngs_modulus": (-2, 1), "youngs_modulus_1": (-2, 1), "youngs_modulus_2": (-2, 1),
     "youngs_modulus_3": (-2, 1), "shear_modulus_12": (-2, 1), "compliances": (2, -1), "yield_strength": (-2, 1), "stiffness": (-3, 1),
@@ -49,6 +49,8 @@ def in_other_units(problem: Problem, length: float, force: float) -> Problem:
         powers = DIMENSIONS.get(key)
         if key == "coefficient":
             powers = (2, -1) if group == "wear" else (1 - keys["exponent"], 0)
+        if key == "period" and group == "history":
+            powers = None
         if powers is None:
             return value
         factor = length ** powers[0] * force ** powers[1]
