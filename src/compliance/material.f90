@@ -31,6 +31,7 @@ module mfv_material
    contains
       procedure :: exists
       procedure :: is_isotropic
+      procedure :: is_anisotropic
       procedure :: plane_modulus
       procedure :: roots
       procedure :: stress_out_of_plane
@@ -126,7 +127,8 @@ contains
       matrix = reshape(compliance([s11, s12, s16, s12, s22, s26, s16, s26, s66]), [3, 3])
    end function matrix_of
 
-   !> Whether every stress in the plane stores energy: the compliances are positive definite.
+   !> Whether no stress in the plane releases energy: the compliances are positive definite or, of an incompressible material,
+   !> semidefinite.
    pure logical function is_stable(s)
       real(wp), intent(in) :: s(6)
       real(wp), parameter :: least = 1.0e-12_wp
@@ -135,18 +137,19 @@ contains
       is_stable = s(s11) > 0.0_wp .and. s(s22) > 0.0_wp .and. s(s66) > 0.0_wp
       if (.not. is_stable) return
       minor = s(s11)*s(s22) - s(s12)**2
-      is_stable = minor > least*s(s11)*s(s22) .and. &
-                  s(s66)*minor - s(s11)*s(s26)**2 - s(s22)*s(s16)**2 + 2.0_wp*s(s12)*s(s16)*s(s26) > least*s(s66)*minor
+      is_stable = minor > -least*s(s11)*s(s22) .and. &
+                  s(s66)*minor - s(s11)*s(s26)**2 - s(s22)*s(s16)**2 + 2.0_wp*s(s12)*s(s16)*s(s26) > -least*s(s66)*s(s11)*s(s22)
    end function is_stable
 
    !> Sum a + i b and product c + i d of the roots, from (mu^2 - (a + i b) mu + c + i d)(mu^2 - (a - i b) mu + c - i d): a =
-   !> s16/s11, 2 c = k - a^2 - b^2, b d = s26/s11 - a c and c^2 + d^2 = s22/s11, k = (2 s12 + s66)/s11. So b^2 is a root of a
-   !> cubic; the largest, for the other pairs of the four roots have smaller sums of imaginary parts. Newton's iteration from
-   !> above descends to it without a loss of digits: the others are (Im mu1 - Im mu2)^2 and -(Re mu1 - Re mu2)^2.
+   !> s16/s11, 2 c = k - b^2, b d = s26/s11 - a c and c^2 + d^2 = s22/s11, k = (2 s12 + s66)/s11 - a^2. So b^2 is a root of a cubic;
+   !> the largest, for the other pairs of the four roots have smaller sums of imaginary parts. Newton's iteration descends to it from
+   !> above; the other roots are apart: (Im mu1 - Im mu2)^2 and -(Re mu1 - Re mu2)^2.
    pure subroutine find_roots(material)
       type(material_type), intent(inout) :: material
       real(wp) :: a, k, skew, last, square, next, c, d, slope
       integer, parameter :: most = 100
+      real(wp), parameter :: nothing = 64.0_wp*epsilon(1.0_wp)
       integer :: i
 
       associate (s => material%compliance)
@@ -168,8 +171,13 @@ contains
          square = next
       end do
       c = 0.5_wp*(k - square)
+      d = (skew - a*c)/sqrt(square)
+      ! Of materials that are symmetric about the surface the first and the last part vanish, but for round-off of a turn.
+      if (abs(a) < nothing*sqrt(square)) a = 0.0_wp
+      if (abs(d) < nothing*sqrt(last)) d = 0.0_wp
+      if (d**2 < 0.5_wp*last) c = sign(sqrt(last - d**2), c)
       material%root_sum = cmplx(a, sqrt(square), wp)
-      material%root_product = cmplx(c, (skew - a*c)/sqrt(square), wp)
+      material%root_product = cmplx(c, d, wp)
    end subroutine find_roots
 
    !> Whether there is a material.
@@ -185,6 +193,13 @@ contains
 
       is_isotropic = self%shear_modulus > 0.0_wp
    end function is_isotropic
+
+   !> Whether there is a material that is not isotropic.
+   elemental logical function is_anisotropic(self)
+      class(material_type), intent(in) :: self
+
+      is_anisotropic = self%exists() .and. .not. self%is_isotropic()
+   end function is_anisotropic
 
    !> mu1 and mu2, each with half the digits where they nearly coincide, but none less for their sum and product.
    pure function roots(self)

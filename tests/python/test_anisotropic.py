@@ -281,7 +281,7 @@ def test_stresses_in_the_upper_body_are_those_turned_by_half_a_turn() -> None:
             "poisson_ratio=0.3: has no effect for a half_plane with",
         ),
         ({"elasticity": "orthotropic", **CARBON}, "stress", "youngs_modulus_3=10000: has no effect with plane='stress'"),
-        ({"elasticity": "orthotropic", **CARBON, "poisson_ratio_12": 4.0}, "strain", "poisson_ratio_12=4: no such material"),
+        ({"elasticity": "orthotropic", **CARBON, "poisson_ratio_12": 4.0}, "strain", "elasticity='orthotropic': no such material"),
         ({"elasticity": "anisotropic"}, "strain", "compliances is missing"),
         (
             {"elasticity": "anisotropic", "compliances": [1.0, 0.0, 1.0, 0.0, 0.0, 2.0]},
@@ -348,3 +348,34 @@ def test_the_tip_of_a_wedge_stretches_an_auxetic_plane_that_sticks(nu: float, mu
         mesh=Mesh(nodes=61),
     )
     assert ("lower_tension" in scene.run(check=True).observables) is not is_stretched
+
+
+def test_slip_that_jams_is_explained() -> None:
+    """Where mu |M|/A is above 1, slip to one side raises the pressure by more than the friction that it overcomes."""
+    scene = Scene(
+        Body.half_plane(elasticity="orthotropic", axis_angle=60.0, **CARBON),
+        Body.disk(10.0, rigid=True),
+        steps=[Step(normal_force=50.0, friction=False), Step(tangential_force=-30.0)],
+        friction=Friction.coulomb(1.7),
+        mesh=Mesh(nodes=51),
+    )
+    result = scene.run()
+    assert result.outcome == "no admissible continuation"
+    assert "mu times contact_mixed_ratio of these oblique bodies is" in result.attributes["message"]
+
+
+def test_a_cubic_crystal_at_45_degrees_is_symmetric() -> None:
+    """Round-off of the turn does not make pressure stretch its surface: no tension, even at a sharp corner."""
+    cubic = {f"youngs_modulus_{i}": 130e3 for i in (1, 2, 3)} | {f"poisson_ratio_{i}": 0.28 for i in (12, 13, 23)}
+    plane = Body.half_plane(elasticity="orthotropic", axis_angle=45.0, shear_modulus_12=80e3, **cubic)
+    result = Scene(plane, Body.flat_punch(1.0), steps=[Step(normal_force=50.0)], mesh=Mesh(nodes=21)).run(check=True)
+    assert result.scene.contact_mixed_ratio == 0.0 and result.observables.lower_tension == 0.0
+
+
+def test_an_incompressible_material_does_not_couple() -> None:
+    """nu = 1/2 in plane strain: the compliances are only semidefinite, B = 0."""
+    thirds = {f"youngs_modulus_{i}": 1.0 for i in (1, 2, 3)} | {f"poisson_ratio_{i}": 0.5 for i in (12, 13, 23)}
+    plane = Body.half_plane(elasticity="orthotropic", shear_modulus_12=1 / 3, **thirds)
+    result = Scene(plane, Body.disk(1.0, rigid=True), steps=[Step(normal_force=0.01)], mesh=Mesh(nodes=21)).run(check=True)
+    assert abs(result.scene.dundurs_beta) < 1e-14
+    assert 1 / result.scene.contact_modulus == pytest.approx(1.5, rel=1e-12)

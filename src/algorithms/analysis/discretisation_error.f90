@@ -13,6 +13,7 @@ module mfv_discretisation_error
    use mfv_friction, only: friction_coefficient_type
    use mfv_kinds, only: pi, wp
    use mfv_motions, only: bulk_motions, control_keep, motion_approach, motion_shift
+   use mfv_near_field, only: near_field_type
    use mfv_node_status, only: holds, in_contact
    use mfv_observables
    use mfv_observer, only: observer_type, relay_type
@@ -688,7 +689,8 @@ contains
    pure real(wp) function pressure_at_jumps(model, pressure) result(at_jumps)
       type(contact_model_type), intent(in) :: model
       real(wp), intent(in) :: pressure(:)
-      real(wp), parameter :: nearly = 0.9_wp
+      real(wp), parameter :: nearly = 0.9_wp, least_softness = 0.1_wp
+      type(near_field_type) :: pair
       real(wp) :: jump, least
       integer :: i
 
@@ -701,7 +703,11 @@ contains
                        largest_jump(model%scene%upper, model%x(i), model%width(i)))
          end do
       end if
+      ! Oblique surfaces that slip to one side are softer (mfv_corners).
+      pair = model%scene%near_field()
       at_jumps = model%scene%modulus()*jump/pi
+      if (pair%normal > 0.0_wp) at_jumps = at_jumps/max(1.0_wp - model%scene%friction%static%largest()*abs(pair%mixed) &
+                                                                   /pair%normal, least_softness)
    end function pressure_at_jumps
 
    !> Larger uncertainties of edges where the exponents of the tractions are less certain (docs/verification.md): of contact with

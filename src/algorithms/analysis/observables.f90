@@ -8,6 +8,7 @@ module mfv_observables
    use mfv_kinds, only: pi, wp
    use mfv_load_extremes, only: candidate_tension, candidate_von_mises, extreme_type, load_extremes_type
    use mfv_motions, only: motions, motion_count => user_motions, motion_approach, motion_shift
+   use mfv_near_field, only: near_field_type
    use mfv_simulation, only: mark_loading, simulation_type
    use mfv_state_interior, only: find_largest_tension
    use mfv_stress_search, only: largest_type
@@ -105,12 +106,13 @@ module mfv_observables
                                 row_type('shift_number', '1', error_none, &
                                          'shift_amplitude times the relative curvature (section 5.2)'), &
                                 row_type('dissipation_number', '1', error_none, &
-                                         'cycle_dissipation over P^2 A, A = sum of (kappa + 1)/(4 G) (eq. 6.5)'), &
-                                row_type('stiffness_number', '1', error_none, 'tangential_stiffness times A'), &
+                                         'cycle_dissipation over P^2 A, A = sum of (kappa + 1)/(4 G) (eq. 6.5); anisotropic: At'), &
+                                row_type('stiffness_number', '1', error_none, 'tangential_stiffness times A (anisotropic: At)'), &
                                 row_type('creepage', '1', error_smooth, &
                                       'rolling: sliding of the upper body over the lower per rolled distance, both to the right'), &
                                 row_type('creepage_number', '1', error_none, &
-                                         'creepage over mu a K: K relative curvature, a contact_half_width (Carter 1926)'), &
+                                         'creepage over mu a K: K relative curvature, a contact_half_width (Carter 1926); '// &
+                                         'anisotropic: over mu a K At/A'), &
                                 row_type('lower_tension', 'force/length^2', error_local, &
                                          'largest tension along the surface of the lower body at the end'), &
                                 row_type('lower_tension_x', 'length', error_place, 'where it is: x'), &
@@ -195,6 +197,7 @@ contains
       real(wp), intent(inout) :: values(:)
       type(zone_edges_type) :: edges
       type(patch_type), allocatable :: patches(:)
+      type(near_field_type) :: pair
       real(wp) :: mean_peak, limit, shear
       integer :: i
 
@@ -231,7 +234,8 @@ contains
          call put(values, 'shear_number', shear/mean_peak)
          call put(values, 'creepage', simulation%contact%rolling%creepage())
          if (edges%patches /= 1) return
-         limit = model%scene%friction%static%largest()*edges%half_width()*model%scene%curvature()
+         pair = model%scene%near_field()
+         limit = model%scene%friction%static%largest()*edges%half_width()*model%scene%curvature()*pair%shear_ratio()
          if (limit > 0.0_wp) call put(values, 'creepage_number', simulation%contact%rolling%creepage()/limit)
       end associate
    end subroutine add_present
@@ -331,7 +335,8 @@ contains
       real(wp), intent(inout) :: values(:)
       !> A normal force that is a smaller fraction of the largest one counts as zero.
       real(wp), parameter :: round_off = significant
-      real(wp) :: sliding_limit, force
+      real(wp) :: sliding_limit, force, shear_modulus
+      type(near_field_type) :: pair
 
       associate (scene => simulation%contact%model%scene)
          force = cycle%return%force(motion_approach)
@@ -340,8 +345,10 @@ contains
          if (sliding_limit > 0.0_wp) call put(values, 'force_number', cycle%force_amplitude()/sliding_limit)
          call put(values, 'shift_number', cycle%shift_amplitude()*scene%curvature())
          if (.not. scene%modulus() > 0.0_wp) return
-         if (force > 0.0_wp) call put(values, 'dissipation_number', cycle%dissipation()*scene%modulus()/force**2)
-         call put(values, 'stiffness_number', cycle%return%stiffness_on_leaving/scene%modulus())
+         pair = scene%near_field()
+         shear_modulus = scene%modulus()/pair%shear_ratio()
+         if (force > 0.0_wp) call put(values, 'dissipation_number', cycle%dissipation()*shear_modulus/force**2)
+         call put(values, 'stiffness_number', cycle%return%stiffness_on_leaving/shear_modulus)
       end associate
    end subroutine add_numbers
 

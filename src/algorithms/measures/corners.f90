@@ -1,12 +1,12 @@
 !> Convex corners of the undeformed surfaces in contact, such as the tip of a wedge, where the pressure has no limit.
 !>
-!> Where the slope of the surfaces jumps by J the pressure is -(m J/pi) ln|x| and smooth terms, m = scene%modulus() (wedge:
-!> Johnson 1985, section 5.2). The stress along the surface is c p - a tau + b T - d N, N and T the integrals of p/(t - x) dt/pi
-!> and tau/(t - x) dt/pi (surface_stress_of in mfv_interior_half_plane). The equations of mfv_near_field, A N + M T + B tau the
-!> slope of the gap and At T + M N - B p the difference e of the strains, bounded both, give N and T where p is not: where the
-!> surfaces stick T = B p/(At - M^2/A) and N = -(M/A) T, where they slip with tau = f p, N = -B f p/(A + M f) and T = f N. An
-!> isotropic surface is compressed by 1 - 2 beta and 1 + 2 beta f^2 times p, without limit; others, such as auxetic ones that
-!> stick, can be stretched.
+!> Where the slope of the surfaces jumps by J the pressure is -(m J/pi) ln|x| and smooth terms, m = 1/A of mfv_near_field (wedge:
+!> Johnson 1985, section 5.2), or 1/(A + M f) where oblique surfaces slip with tau = f p. The stress along the surface is c p - a tau +
+!> b T - d N, N and T the integrals of p/(t - x) dt/pi and tau/(t - x) dt/pi (surface_stress_of in mfv_interior_half_plane). Two
+!> equations have bounded right sides: A N + M T + B tau is the slope of the gap and, where the surfaces stick, At T + M N - B p the
+!> difference e of the strains. With tau = r p next to the corner N = -B (r At + M) p/D and T = B (A + M r) p/D, D = A At - M^2, where
+!> they stick; N = -B f p/(A + M f), T = f N where they slip. An isotropic surface, pressed only (r = 0), is compressed by 1 - 2 beta or
+!> 1 + 2 beta f^2 times p, without limit; others, such as auxetic ones that stick, can be stretched.
 module mfv_corners
    use mfv_compliance, only: block_up, block_wt
    use mfv_contact_model, only: contact_model_type
@@ -102,17 +102,13 @@ contains
       associate (a => pair%normal, at => pair%tangential, b => pair%coupling, m => pair%mixed)
          of_pressure = 0.0_wp
          of_shear = 0.0_wp
-         if (model%compliance%elastic_block(block_wt)) then
-            if (holds(state%status(corner%node))) then
-               ratio = 0.0_wp
-               of_shear = b/(at - m**2/a)
-               of_pressure = -m/a*of_shear
-            else
-               of_pressure = -pair%edge_product(ratio)
-               of_shear = ratio*of_pressure
-            end if
-         else if (holds(state%status(corner%node))) then
-            ratio = 0.0_wp
+         if (.not. holds(state%status(corner%node))) then
+            if (model%compliance%elastic_block(block_wt)) of_pressure = -pair%edge_product(ratio)
+            of_shear = ratio*of_pressure
+         else if (model%compliance%elastic_block(block_wt)) then
+            of_pressure = -b*(ratio*at + m)/(a*at - m**2)
+            of_shear = b*(a + m*ratio)/(a*at - m**2)
+         else
             of_shear = b/at
          end if
       end associate

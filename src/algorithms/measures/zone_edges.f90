@@ -686,9 +686,12 @@ contains
 
       exponent_shift = 0.0_wp
       if (.not. model%compliance%elastic_block(block_wt)) return
-      pair = model%scene%near_field()
-      exponent_shift = root_shift(pair%edge_product(ratio))
-      if (model%scene%lower%is_matrix()) exponent_shift = root_shift(local_beta(model, node)*ratio)
+      if (model%scene%lower%is_matrix()) then
+         exponent_shift = root_shift(local_beta(model, node)*ratio)
+      else
+         pair = model%scene%near_field()
+         exponent_shift = root_shift(pair%edge_product(ratio))
+      end if
    end function exponent_shift
 
    !> Dundurs' beta of bodies given by a matrix, from the entries about a node. Next to a force P, w is -A ln(r) P/pi; next to

@@ -3,6 +3,7 @@
 module mfv_contact_path
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_certificate, only: certificate_type
+   use mfv_compliance, only: block_wt
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: adapt_model, contact_model_type
    use mfv_contact_state, only: contact_state_type, new_contact_state
@@ -16,6 +17,7 @@ module mfv_contact_path
    use mfv_linear_solvers, only: choose_stepping, new_contact_system
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_wear, control_force, &
                           control_displacement
+   use mfv_near_field, only: near_field_type
    use mfv_node_status
    use mfv_observer, only: observer_type
    use mfv_recent_intervals, only: recent_intervals_type
@@ -965,10 +967,27 @@ contains
       hint = ''
       associate (friction => self%model%scene%friction)
          if (friction%acts()) hint = trim(friction%law%explain_failure(self%model%compliance%modulus/self%model%interval()))
+         if (hint == '' .and. friction%acts()) hint = trim(hint_of_jamming(self))
          if (hint == '' .and. .not. friction%is_linear()) hint = '; another friction_tolerance in &solver may find one'
       end associate
       call self%end_here(MFV_NO_CONTINUATION, 'no admissible continuation: '//why//hint, error)
    end subroutine no_continuation
+
+   !> On oblique anisotropic bodies slip to one side raises the pressure. Where A - mu |M| of mfv_near_field is negative, friction grows
+   !> by more than the shear that it resists, on any mesh.
+   pure function hint_of_jamming(self) result(hint)
+      class(contact_path_type), intent(in) :: self
+      character(len=240) :: hint
+      type(near_field_type) :: pair
+
+      hint = ''
+      pair = self%model%scene%near_field()
+      if (.not. self%model%compliance%elastic_block(block_wt)) return
+      if (self%model%scene%friction%static%largest()*abs(pair%mixed) < pair%normal .or. .not. pair%normal > 0.0_wp) return
+      hint = '; mu times contact_mixed_ratio of these oblique bodies is '// &
+             to_text(self%model%scene%friction%static%largest()*pair%mixed/pair%normal, 3)// &
+             ': beyond 1 in magnitude slip to one side jams, and no mesh helps'
+   end function hint_of_jamming
 
    !> Error: the iteration of the linear solver failed, and no other solver can take over.
    subroutine not_converged(self, error)

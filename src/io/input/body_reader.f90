@@ -73,7 +73,7 @@ contains
          return
       end if
       allowed = 'shape rigid'
-      allowed = allowed//' '//trim(needed_keys(shape))
+      if (needed_keys(shape) /= '') allowed = allowed//' '//trim(needed_keys(shape))
       if (shape == 'profile') allowed = allowed//' interpolation position_scale height_scale level centred'
       if (shape /= 'matrix' .and. .not. rigid) then
          elasticity = reader%text_value('body', body, 'elasticity')
@@ -260,8 +260,8 @@ contains
       logical :: valid
       integer :: i
 
-      keys = list_of_words(trim(merge(orthotropic_keys//' '//plane_strain_keys, &
-                                      orthotropic_keys//repeat(' ', len(plane_strain_keys) + 1), plane /= plane_stress)))
+      keys = list_of_words(orthotropic_keys)
+      if (plane /= plane_stress) keys = list_of_words(orthotropic_keys//' '//plane_strain_keys)
       do i = 1, size(keys)
          call reader%need('body', number, keys(i)%text, error)
          if (allocated(error)) return
@@ -275,9 +275,9 @@ contains
       call new_orthotropic_material([value('youngs_modulus_1'), value('youngs_modulus_2'), value('youngs_modulus_3')], &
                                     [value('poisson_ratio_12'), value('poisson_ratio_13'), value('poisson_ratio_23')], &
                                     value('shear_modulus_12'), plane, degree*value('axis_angle'), body%elasticity%material, valid)
-      if (.not. valid) call reader%complain('body', number, 'poisson_ratio_12', 'no such material: some stress would release '// &
-                                            'energy; the squares of nu12, nu13 and nu23 must be below E1/E2, E1/E3 and E2/E3, '// &
-                                            'and smaller if all are large', error)
+      if (.not. valid) call reader%complain('body', number, 'elasticity', 'no such material: some stress would release energy; '// &
+                                            'the squares of poisson_ratio_12, _13 and _23 must be below E1/E2, E1/E3 and '// &
+                                            'E2/E3, and smaller if several are large', error)
       if (number == 2) body%elasticity%material = body%elasticity%material%mirrored()
 
    contains

@@ -116,14 +116,15 @@ contains
                     unit='force/length^2', above=0.0_wp)
       call keys%add('body', 'poisson_ratio_12', kind_real, 'orthotropic: contraction along axis 2 over extension along axis 1, '// &
                     'under a stress along axis 1, needed')
-      call keys%add('body', 'poisson_ratio_13', kind_real, 'orthotropic: the same of axes 3 and 1, under a stress along axis 1'// &
-                    strain)
-      call keys%add('body', 'poisson_ratio_23', kind_real, 'orthotropic: the same of axes 3 and 2, under a stress along axis 2'// &
-                    strain)
+      call keys%add('body', 'poisson_ratio_13', kind_real, 'orthotropic: contraction along axis 3 over extension along '// &
+                    'axis 1, under a stress along axis 1'//strain)
+      call keys%add('body', 'poisson_ratio_23', kind_real, 'orthotropic: contraction along axis 3 over extension along '// &
+                    'axis 2, under a stress along axis 2'//strain)
       call keys%add('body', 'shear_modulus_12', kind_real, 'orthotropic: shear modulus in the plane, needed', &
                     unit='force/length^2', above=0.0_wp)
-      call keys%add('body', 'compliances', kind_real, 'anisotropic: S11, S12, S22, S16, S26, S66 and, in plane strain, '// &
-                    'S13, S23, S33, S36, needed: strains (11, 22, engineering 12) by stresses', unit='length^2/force')
+      call keys%add('body', 'compliances', kind_real, 'anisotropic: six or, in plane strain, ten numbers, needed: S11, '// &
+                    'S12, S22, S16, S26, S66, S13, S23, S33, S36; strains (11, 22, engineering 12) by stresses', &
+                    unit='length^2/force')
       keys%keys(keys%size)%is_list = .true.
       call keys%add('body', 'axis_angle', kind_real, 'orthotropic, anisotropic: angle from x to the first axis of the '// &
                     'material, counterclockwise', unit='degrees', default='0', lower=-180.0_wp, upper=180.0_wp)

@@ -262,8 +262,8 @@ contains
          if (allocated(fault)) fault%message = quoted(dundurs_key)//': '//fault%message
       end if
       if (.not. allocated(fault)) then
-         if (any(.not. [case%scene%lower%rigid .or. case%scene%lower%elasticity%material%is_isotropic(), &
-                        case%scene%upper%rigid .or. case%scene%upper%elasticity%material%is_isotropic()])) then
+         if (case%scene%lower%elasticity%material%is_anisotropic() .or. &
+             case%scene%upper%elasticity%material%is_anisotropic()) then
             call set_error(fault, MFV_INPUT_ERROR, dundurs_key//' needs isotropic bodies')
          else if (case%scene%modulus() > 0.0_wp) then
             call self%write_materials(flexibilities(beta, 1.0_wp/case%scene%modulus()))

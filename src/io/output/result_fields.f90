@@ -273,12 +273,13 @@ contains
          call add_body(list, 'upper', scene%upper)
          if (scene%modulus() > 0.0_wp) then
             call list%add('contact_modulus', scene%modulus(), 'force/length^2', 'modulus m of both bodies, 1/m = sum of '// &
-                          '(kappa + 1)/(4 G); of anisotropic bodies that under pressure')
+                          '(kappa + 1)/(4 G); of anisotropic bodies of their compliances A under pressure')
             call list%add('dundurs_beta', scene%beta(), '1', "Dundurs' parameter beta, positive if the lower body "// &
                           "couples more strongly")
             pair = scene%near_field()
-            if (is_anisotropic(scene%lower) .or. is_anisotropic(scene%upper)) then
-               call list%add('contact_shear_modulus', scene%modulus()/pair%shear_ratio(), 'force/length^2', 'the same under shear')
+            if (scene%lower%elasticity%material%is_anisotropic() .or. scene%upper%elasticity%material%is_anisotropic()) then
+               call list%add('contact_shear_modulus', scene%modulus()/pair%shear_ratio(), 'force/length^2', 'modulus of '// &
+                             'anisotropic bodies under shear: 1/At of both')
                call list%add('contact_mixed_ratio', pair%mixed/pair%normal, '1', 'compliance between pressure and shear over '// &
                              'that under pressure, of oblique anisotropic bodies')
             end if
@@ -288,15 +289,6 @@ contains
                        'friction, 0 without friction')
       end associate
    end subroutine add_scene
-
-   !> Whether a body has a material that is not isotropic.
-   pure logical function is_anisotropic(body)
-      type(body_type), intent(in) :: body
-
-      associate (material => body%elasticity%material)
-         is_anisotropic = material%exists() .and. .not. material%is_isotropic()
-      end associate
-   end function is_anisotropic
 
    !> What is known of one body.
    subroutine add_body(list, name, body)
