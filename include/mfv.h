@@ -317,6 +317,9 @@ int mfv_write(mfv_case *handle, const char *path);
  * one such material in one direction, one with a gap x^2/(2R), pressed without shear, then sheared: m = 1/A, k = M/A of both.
  *   "surface_compliance" {s11, s12, s22, s16, s26, s66, number}
  *   "oblique_half_width" {P, Q, R, m, k}, "oblique_stick_ratio" {Q, P, mu, k} (since 0.10.0)
+ * A wave D (1 - cos(2 pi x/l)) on a half-plane that repeats with it, pressed, then sheared before full contact; forces of a period.
+ *   "wave_half_width" {P, D, l, G, kappa}, "wave_pressure" {x, P, D, l, G, kappa}, "wave_stick_ratio" {Q, P, mu, D, l, G, kappa}
+ *   (since 0.10.0)
  * Pin in a bore of one material in plane strain, without friction (Persson): force at which the contact reaches half_angle
  * [radians] to either side; clearance: by how much the bore's radius is larger. NaN beyond about 85 degrees. Contact arc
  * 2a/R [radians] of a disk on a rigid plane, plane strain, without friction, at which it yields (Table 4.1).

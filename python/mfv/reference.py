@@ -240,3 +240,33 @@ def oblique_half_width(
 @_closed_form
 def oblique_stick_ratio(tangential_force: Number, normal_force: Number, friction_coefficient: Number, mixed_ratio: Number) -> Array:
     """Width of the stick zone over that of the contact of such bodies, pressed without shear, then sheared by a growing force."""
+
+
+@_closed_form
+def wave_half_width(
+    normal_force: Number, amplitude: Number, wavelength: Number, shear_modulus: Number, kolosov_constant: Number
+) -> Array:
+    """Half-width of the contact of a rigid wave amplitude (1 - cos(2 pi x/wavelength)) with a half-plane that repeats (Westergaard).
+
+    Forces are those of one wave; half the wavelength in full contact.
+    """
+
+
+@_closed_form
+def wave_pressure(
+    x: Number, normal_force: Number, amplitude: Number, wavelength: Number, shear_modulus: Number, kolosov_constant: Number
+) -> Array:
+    """Pressure at x under such a wave (Westergaard), also in full contact."""
+
+
+@_closed_form
+def wave_stick_ratio(
+    tangential_force: Number,
+    normal_force: Number,
+    friction_coefficient: Number,
+    amplitude: Number,
+    wavelength: Number,
+    shear_modulus: Number,
+    kolosov_constant: Number,
+) -> Array:
+    """Width of the stick zone over that of the contact of such a wave, pressed, then sheared; NaN in full contact."""

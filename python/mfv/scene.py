@@ -169,7 +169,7 @@ if TYPE_CHECKING:
 class Body(KeyGroup):
     """A body: the keys of &body. `data`: arrays in place of the `file` of a profile or a matrix."""
 
-    shape: Literal["half_plane", "disk", "hole", "flat_punch", "rounded_punch", "wedge", "power", "profile", "matrix"]
+    shape: Literal["half_plane", "disk", "hole", "flat_punch", "rounded_punch", "wedge", "power", "profile", "matrix", "wave"]
     rigid: bool | None = None
     shear_modulus: float | None = None
     youngs_modulus: float | None = None
@@ -182,6 +182,8 @@ class Body(KeyGroup):
     angle: float | None = None
     coefficient: float | None = None
     exponent: float | None = None
+    amplitude: float | None = None
+    wavelength: float | None = None
     elasticity: Literal["own", "half_plane", "orthotropic", "anisotropic"] | None = None
     youngs_modulus_1: float | None = None
     youngs_modulus_2: float | None = None
@@ -239,6 +241,11 @@ class Body(KeyGroup):
     def power(cls, coefficient: float, exponent: float, **elastic: Unpack[Elastic]) -> Body:
         """The surface recedes by coefficient |x|^exponent; `coefficient` [length^(1-exponent)], `exponent` at least 1."""
         return cls(shape="power", coefficient=coefficient, exponent=exponent, **elastic)
+
+    @classmethod
+    def wave(cls, amplitude: float, wavelength: float, **elastic: Unpack[Elastic]) -> Body:
+        """The surface recedes by amplitude (1 - cos(2 pi x/wavelength)) [length]; with `period` in Mesh it repeats."""
+        return cls(shape="wave", amplitude=amplitude, wavelength=wavelength, **elastic)
 
     @classmethod
     def profile(

@@ -34,6 +34,7 @@ module mfv
    use mfv_reference_oblique, only: oblique_half_width, oblique_stick_ratio
    use mfv_reference_persson, only: persson_force
    use mfv_reference_spence, only: spence_cylinder_shear, spence_flat_punch_shear, spence_stick_ratio
+   use mfv_reference_wave, only: wave_type, new_wave_contact
    use mfv_reference_yield, only: contact_arc_at_yield
    use mfv_scene, only: step_type
    use mfv_status

@@ -12,6 +12,7 @@ module mfv_reference_c
    use mfv_reference_oblique, only: oblique_half_width, oblique_stick_ratio
    use mfv_reference_persson, only: persson_force
    use mfv_reference_spence, only: spence_cylinder_shear, spence_flat_punch_shear, spence_stick_ratio
+   use mfv_reference_wave, only: new_wave_contact, wave_type
    use mfv_reference_yield, only: contact_arc_at_yield
    implicit none
    private
@@ -27,6 +28,7 @@ contains
       real(wp), intent(out) :: value
       logical, intent(out) :: is_known
       real(wp) :: values(1)
+      type(wave_type) :: wave
 
       value = ieee_value(1.0_wp, ieee_quiet_nan)
       is_known = .true.
@@ -98,6 +100,21 @@ contains
       case ('oblique_stick_ratio')
          if (fits('x++x')) then
             if (a(2) + a(4)*a(1) > 0) value = oblique_stick_ratio(a(1), a(2), a(3), a(4))
+         end if
+      case ('wave_half_width')
+         if (fits('0+++k')) then
+            wave = new_wave_contact(a(2), a(3), 4.0_wp*a(4)/(a(5) + 1.0_wp))
+            value = wave%half_width(a(1))
+         end if
+      case ('wave_pressure')
+         if (fits('x0+++k')) then
+            wave = new_wave_contact(a(3), a(4), 4.0_wp*a(5)/(a(6) + 1.0_wp))
+            value = wave%pressure(a(1), a(2))
+         end if
+      case ('wave_stick_ratio')
+         if (fits('x+++++k')) then
+            wave = new_wave_contact(a(4), a(5), 4.0_wp*a(6)/(a(7) + 1.0_wp))
+            if (a(2) < wave%full_force) value = wave%stick_ratio(a(1), a(2), a(3))
          end if
       case ('persson_force')
          if (fits('+++n')) then

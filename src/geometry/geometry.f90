@@ -3,20 +3,20 @@
 module mfv_geometry
    use, intrinsic :: iso_c_binding, only: c_int, c_null_ptr, c_ptr, c_size_t
    use mfv_gsl, only: gsl_interp_alloc, gsl_interp_eval, gsl_interp_free, gsl_interp_init, gsl_interp_linear, gsl_interp_steffen
-   use mfv_kinds, only: wp
+   use mfv_kinds, only: pi, wp
    implicit none
    private
    public :: geometry_type, new_half_plane_surface, new_disk, new_hole, new_flat_punch, new_rounded_punch, new_power, new_wedge, &
-             new_profile, new_points
+             new_profile, new_points, new_wave
    public :: gap_in_hole, radial_gap_in_hole
    public :: shape_half_plane, shape_disk, shape_hole, shape_flat_punch, shape_rounded_punch, shape_wedge, shape_power, &
-             shape_profile, shape_matrix, shape_names
+             shape_profile, shape_matrix, shape_wave, shape_names
    public :: interpolation_unset, interpolation_linear, interpolation_cubic
 
    integer, parameter :: shape_half_plane = 1, shape_disk = 2, shape_hole = 3, shape_flat_punch = 4, shape_rounded_punch = 5, &
-                         shape_wedge = 6, shape_power = 7, shape_profile = 8, shape_matrix = 9
+                         shape_wedge = 6, shape_power = 7, shape_profile = 8, shape_matrix = 9, shape_wave = 10
    !> Names of the shapes, in the order of their numbers.
-   character(*), parameter :: shape_names = 'half_plane disk hole flat_punch rounded_punch wedge power profile matrix'
+   character(*), parameter :: shape_names = 'half_plane disk hole flat_punch rounded_punch wedge power profile matrix wave'
    !> Interpolation of a profile: linear by default; linear or monotone cubic by choice, in the order of the key.
    integer, parameter :: interpolation_unset = 0, interpolation_linear = 1, interpolation_cubic = 2
 
@@ -29,6 +29,8 @@ module mfv_geometry
       real(wp) :: flat_half_width = 0.0_wp
       !> Power law: recess coefficient*|x|**exponent; the coefficient is a length^(1 - exponent).
       real(wp) :: coefficient = 0.0_wp, exponent = 0.0_wp
+      !> Wave: recess amplitude*(1 - cos(2 pi x/wavelength)).
+      real(wp) :: amplitude = 0.0_wp, wavelength = 0.0_wp
       !> First and last x of the surface.
       real(wp) :: from = -huge(1.0_wp), to = huge(1.0_wp)
       !> Profile: increasing positions and the recess there. Matrix: nodes and their initial recess.
@@ -102,6 +104,13 @@ contains
 
       body = geometry_type(shape=shape_wedge, coefficient=slope, exponent=1.0_wp)
    end function new_wedge
+
+   !> Wave with a crest at x = 0: recess amplitude*(1 - cos(2 pi x/wavelength)); lengths.
+   pure type(geometry_type) function new_wave(amplitude, wavelength) result(body)
+      real(wp), intent(in) :: amplitude, wavelength
+
+      body = geometry_type(shape=shape_wave, amplitude=amplitude, wavelength=wavelength)
+   end function new_wave
 
    !> Profile through the points (position, height), lengths; height is the recess. `interpolation`: linear, or Steffen's
    !> monotone cubic, without overshoot, with rounded corners. At least three strictly increasing positions (checked by the
@@ -188,7 +197,7 @@ contains
    pure logical function is_regular(self)
       class(geometry_type), intent(in) :: self
 
-      is_regular = self%shape /= shape_profile
+      is_regular = self%shape /= shape_profile .and. self%shape /= shape_wave
       if (self%shape == shape_matrix) is_regular = all(abs(self%height) <= 0.0_wp)
    end function is_regular
 
@@ -214,6 +223,7 @@ contains
 
       size_of_shape = self%half_extent()
       if (self%shape == shape_rounded_punch) size_of_shape = self%flat_half_width + self%radius
+      if (self%shape == shape_wave) size_of_shape = self%wavelength
    end function size_of_shape
 
    !> Distance of the surface from the tangent at x = 0 (length) at the positions `x`; zero outside the surface of a circle.
@@ -236,6 +246,8 @@ contains
          depth = max(abs(x) - self%flat_half_width, 0.0_wp)**2/(2.0_wp*self%radius)
       case (shape_power, shape_wedge)
          depth = power_of(self, abs(x))
+      case (shape_wave)
+         depth = 2.0_wp*self%amplitude*sin(pi*x/self%wavelength)**2
       case (shape_profile)
          depth = interpolated(self, x, self%interpolation)
       case (shape_matrix)

@@ -286,6 +286,7 @@ static const struct {
     {"rounded_punch_half_width", 5}, {"rounded_punch_approach", 4}, {"rounded_punch_pressure", 4},
     {"rounded_punch_stick_ratio", 5}, {"rounded_punch_shear", 6},
     {"persson_force", 4}, {"yield_contact_arc", 3}, {"surface_compliance", 7}, {"oblique_half_width", 5}, {"oblique_stick_ratio", 4},
+    {"wave_half_width", 5}, {"wave_pressure", 6}, {"wave_stick_ratio", 7},
 };
 enum { FORMS = sizeof forms / sizeof forms[0], MOST_NUMBERS = 6 };
 

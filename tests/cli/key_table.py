@@ -56,6 +56,9 @@ SCENES: dict[str, Groups] = {
     "elastic power": scene(
         ELASTIC, ELASTIC | {"shape": "'power'", "coefficient": "2.0", "exponent": "2"}, MESH, COULOMB, PRESS, SHEAR
     ),
+    "wave": scene(
+        ELASTIC, {"shape": "'wave'", "amplitude": "1e-3", "wavelength": "0.1", "rigid": ".true."}, MESH, {}, {"normal_force": "1e-3"}
+    ),
     "profile": scene(
         ELASTIC, {"shape": "'profile'", "file": "'profile.txt'", "rigid": ".true."}, MESH, {}, {"normal_force": "1e-3"}
     ),
@@ -172,7 +175,7 @@ def part(place: str, scene: str, value: str, **more: object) -> Row:
     return real(place, scene, value, lower=1e-12, upper=1.0, **more)
 
 
-SHAPES = "half_plane disk hole flat_punch rounded_punch wedge power profile matrix"
+SHAPES = "half_plane disk hole flat_punch rounded_punch wedge power profile matrix wave"
 MODULUS = "force/length^2"
 NO_FRICTION = "must be 0 in a step without friction (or where every coefficient is 0)"
 BELOW_KINETIC = "must not be above mu_static"
@@ -197,6 +200,7 @@ CASE: dict[tuple[str, str], Row] = {
             "'rounded_punch'": "half_width is missing",
             "'wedge'": "angle is missing",
             "'power'": "coefficient is missing",
+            "'wave'": "amplitude is missing",
             "'profile'": "has no effect|file is missing",
             "'matrix'": "has no effect",
         },
@@ -248,6 +252,12 @@ CASE: dict[tuple[str, str], Row] = {
         lower=1.0,
         upper=100.0,
         needed=": exponent is missing; it must be a number at least 1 and at most 100",
+    ),
+    ("body", "amplitude"): positive(
+        "body(2)", "wave", "1e-3", "length", needed=": amplitude is missing; it must be a number above 0"
+    ),
+    ("body", "wavelength"): positive(
+        "body(2)", "wave", "0.1", "length", needed=": wavelength is missing; it must be a number above 0"
     ),
     ("body", "elasticity"): choice(
         "body(1)",
@@ -321,6 +331,7 @@ CASE: dict[tuple[str, str], Row] = {
     ),
     ("mesh", "half_width"): positive("mesh", "cylinder", "0.02", "length"),
     ("mesh", "half_angle"): real("mesh", "elastic disk", "9", "degrees", lower=0.0, above=True, upper=180.0),
+    ("mesh", "period"): positive("mesh", "cylinder", "0.04", "length", without=("half_width",)),
     ("mesh", "refine"): choice("mesh", "cylinder", "'edges'", "none edges"),
     ("mesh", "ends"): real(
         "mesh",

@@ -24,10 +24,9 @@ FULL = math.pi * MODULUS * HEIGHT / PERIOD
 
 def wave(share_of_full: float, nodes: int, steps: list[Step], coupling: str = "none", **mesh: Any) -> mfv.Result:
     """A rigid wave on a half-plane, pressed without friction by a share of the mean pressure of full contact."""
-    x = np.linspace(-PERIOD / 2, PERIOD / 2, 8001)
     scene = Scene(
         Body.half_plane(**PLANE),
-        Body.profile(x, HEIGHT * (1 - np.cos(2 * np.pi * x / PERIOD)), rigid=True, interpolation="monotone_cubic"),
+        Body.wave(HEIGHT, PERIOD, rigid=True),
         steps=[Step(normal_force=share_of_full * FULL * PERIOD, friction=False), *steps],
         friction=Friction.coulomb(MU),
         mesh=Mesh(nodes=nodes, period=PERIOD, **mesh),
@@ -39,20 +38,21 @@ def wave(share_of_full: float, nodes: int, steps: list[Step], coupling: str = "n
 @pytest.mark.parametrize("share", [0.2, 0.7])
 def test_westergaards_wave_and_its_shearing(share: float) -> None:
     """Mean pressure p* sin^2(pi a/l); a stick zone of sin^2(pi c/l) = sin^2(pi a/l) (1 - Q/(mu P)). Edges and peaks converge."""
-    root = math.sqrt(share)
-    contact = PERIOD / math.pi * math.asin(root)
-    stick = PERIOD / math.pi * math.asin(root * math.sqrt(0.5))
+    force, form = share * FULL * PERIOD, (HEIGHT, PERIOD, 1 / (2 * 1.2), 3 - 4 * 0.2)
+    contact = float(mfv.reference.wave_half_width(force, *form))
+    ratio = float(mfv.reference.wave_stick_ratio(0.5 * MU * force, force, MU, *form))
+    assert math.sin(math.pi * contact / PERIOD) ** 2 == pytest.approx(share, rel=1e-12)
+    assert math.sin(math.pi * ratio * contact / PERIOD) ** 2 == pytest.approx(0.5 * share, rel=1e-12)
     errors = []
     for nodes in (128, 512):
         result = wave(share, nodes, [Step(force_ratio=0.5)])
         found = result.observables
-        errors.append([
-            found.contact_half_width / contact - 1, found.stick_ratio / (stick / contact) - 1, found.peak_pressure / (2 * FULL * root) - 1
-        ])  # fmt: skip
-        x = result.mesh.x
-        inside = np.sqrt(np.maximum(root**2 - np.sin(math.pi * x / PERIOD) ** 2, 0.0))
-        pressure = 2 * FULL * np.cos(math.pi * x / PERIOD) * inside
-        assert np.max(np.abs(result.state.pressure - pressure)) < 1.5 * FULL / nodes**0.5
+        peak = float(mfv.reference.wave_pressure(0.0, force, *form))
+        errors.append([found.contact_half_width / contact - 1, found.stick_ratio / ratio - 1, found.peak_pressure / peak - 1])
+        pressure = mfv.reference.wave_pressure(result.mesh.x, force, *form)
+        np.testing.assert_allclose(result.reference.pressure, pressure, rtol=0, atol=1e-12 * peak)
+        assert np.max(np.abs(result.state.pressure - pressure)) < 0.7 * FULL / math.sqrt(nodes)
+        assert np.sum(pressure * result.mesh.width) == pytest.approx(force, rel=2e-3)
     assert np.all(np.abs(errors[1]) < [2e-5, 5e-5, 1e-4]), errors
     assert np.all(np.abs(errors[0]) < [3e-4, 3e-4, 2e-3]), errors
 
@@ -66,6 +66,7 @@ def test_full_contact(coupling: str) -> None:
         result = wave(1.5, nodes, [], coupling)
         x = result.mesh.x
         errors.append(np.max(np.abs(result.state.pressure - FULL * (1.5 + np.cos(2 * np.pi * x / PERIOD)))) / FULL)
+        np.testing.assert_allclose(result.reference.pressure, FULL * (1.5 + np.cos(2 * np.pi * x / PERIOD)), rtol=1e-12)
         force = 1.5 * FULL * PERIOD
         approach = HEIGHT + force / (math.pi * MODULUS / 2) * math.log(2 * math.pi)
         assert result.summary.approach == pytest.approx(approach, rel=2e-3 * 32 / nodes)
@@ -195,6 +196,7 @@ def test_unequal_intervals(refine: dict[str, Any]) -> None:
         ({"datum": 0.2}, Body.disk(1.0, rigid=True), {}, [], "must be above the period over 2 pi, 0.31831"),
         ({}, Body.disk(1.0, rigid=True), {}, [Step(moment=1.0)], "has no effect that repeats"),
         ({}, Body.disk(1.0, rigid=True), {}, [Step(lower_bulk_stress=1.0)], "has no effect that repeats"),
+        ({}, Body.wave(0.1, 0.9, rigid=True), {}, [], "must be a whole number of wavelengths of body 2, 0.9"),
         ({}, Body.disk(1.0, rigid=True), {"ends": [-1.5, 0.0, 0.5]}, [], "must be within half a period, 1"),
     ],
 )

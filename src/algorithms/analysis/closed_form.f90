@@ -10,9 +10,11 @@ module mfv_closed_form
    use mfv_reference_indenter, only: indenter_type
    use mfv_reference_mindlin, only: mindlin_history_type, new_mindlin_history
    use mfv_reference_spence, only: spence_cylinder_shear, spence_flat_punch_shear
+   use mfv_reference_wave, only: new_wave_contact, wave_type
    use mfv_scene, only: scene_type
    use mfv_scene_indenter, only: indenter_of
    use mfv_simulation, only: simulation_type, states_reversals, states_steps
+   use mfv_tolerances, only: significant
    implicit none
    private
    public :: closed_form_type, closed_form_of, alike
@@ -47,7 +49,11 @@ contains
          if (.not. (force > 0.0_wp .and. scene%modulus() > 0.0_wp)) return
          if (model%compliance%elastic_block(block_wt) .and. model%tangential .and. .not. alike(scene)) return
          if (any(simulation%load_summary%controlled(motion_rotation + 1:))) return
-         if (any(abs(model%worn) > 0.0_wp) .or. scene%mesh%period > 0.0_wp) return
+         if (any(abs(model%worn) > 0.0_wp)) return
+         if (scene%mesh%period > 0.0_wp) then
+            call add_wave(form, simulation)
+            return
+         end if
          if (simulation%load_summary%controlled(motion_rotation) .and. .not. (is_hertz(scene) .and. model%rolls())) return
          form%indenter = indenter_of(scene)
          if (.not. form%indenter%is_flat() .and. .not. (scene%lower%has_sharp_ends() .or. scene%upper%has_sharp_ends())) then
@@ -70,6 +76,25 @@ contains
          if (is_mindlin(form, simulation)) call add_mindlin(form, simulation)
       end associate
    end function closed_form_of
+
+   !> Pressure of a wave on a straight surface, of which the mesh has one period.
+   subroutine add_wave(form, simulation)
+      type(closed_form_type), intent(inout) :: form
+      type(simulation_type), intent(in) :: simulation
+      type(wave_type) :: wave
+
+      associate (model => simulation%contact%model, scene => simulation%contact%model%scene, &
+                 force => simulation%contact%state%fields%force(motion_approach))
+         if (.not. (scene%lower%is_straight() .or. scene%upper%is_straight())) return
+         associate (wavelength => max(scene%lower%wavelength, scene%upper%wavelength))
+            if (abs(wavelength - scene%mesh%period) > significant*scene%mesh%period) return
+            wave = new_wave_contact(max(scene%lower%amplitude, scene%upper%amplitude), wavelength, scene%modulus())
+         end associate
+         form%half_width = wave%half_width(force)
+         form%pressure = wave%pressure(model%x, force)
+         form%pressure_source = 'Westergaard 1939; Johnson 1985, section 13.2'
+      end associate
+   end subroutine add_wave
 
    !> Positions of the nodes, length, from the middle of the contact, which may have rolled.
    function middle_at_zero(simulation) result(position)

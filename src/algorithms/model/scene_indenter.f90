@@ -2,7 +2,7 @@
 module mfv_scene_indenter
    use mfv_body, only: body_type
    use mfv_geometry, only: shape_flat_punch, shape_half_plane, shape_matrix, shape_power, shape_profile, &
-                           shape_rounded_punch, shape_wedge
+                           shape_rounded_punch, shape_wave, shape_wedge
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_approach, control_force, control_displacement
    use mfv_reference_indenter, only: flat_indenter, indenter_type, power_indenter, rounded_punch_indenter
@@ -34,7 +34,8 @@ contains
       shapes = [scene%lower%shape, scene%upper%shape]
       indenter = indenter_of(scene)
       touches_everywhere = indenter%is_flat() .and. .not. scene%curvature() > 0.0_wp .and. &
-                           .not. any(shapes == shape_flat_punch .or. shapes == shape_profile .or. shapes == shape_matrix)
+                           .not. any(shapes == shape_flat_punch .or. shapes == shape_profile .or. shapes == shape_matrix .or. &
+                                     shapes == shape_wave)
    end function touches_everywhere
 
    !> Whether there are closed forms for the shape of a body.

@@ -124,6 +124,8 @@ contains
          keys = 'angle'
       case ('power')
          keys = 'coefficient exponent'
+      case ('wave')
+         keys = 'amplitude wavelength'
       case ('profile', 'matrix')
          keys = 'file'
       case default
@@ -189,6 +191,8 @@ contains
          body = new_body(new_wedge(tan(degree*value('angle'))))
       case ('power')
          body = new_body(new_power(value('coefficient'), value('exponent')))
+      case ('wave')
+         body = new_body(new_wave(value('amplitude'), value('wavelength')))
       case default
          call read_body_file(reader, number, body, error)
       end select

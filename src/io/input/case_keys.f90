@@ -80,6 +80,9 @@ contains
                     unit='length^(1-exponent)', above=0.0_wp)
       call keys%add('body', 'exponent', kind_real, 'power: exponent of the shape, needed; 1: a wedge, 2: a cylinder', &
                     lower=1.0_wp, upper=100.0_wp)
+      call keys%add('body', 'amplitude', kind_real, 'wave: the surface recedes by amplitude*(1 - cos(2 pi x/wavelength)), needed', &
+                    unit='length', above=0.0_wp)
+      call keys%add('body', 'wavelength', kind_real, 'wave: its length, needed', unit='length', above=0.0_wp)
       call keys%add('body', 'elasticity', kind_choice, 'how the surface deforms: a disk or hole as such by default, or as a '// &
                     'half-plane, as all other shapes do; orthotropic, anisotropic: as a half-plane of such a material', &
                     default='own', choices=elasticity_names)

@@ -104,6 +104,15 @@ contains
       end if
       if (allocated(error)) return
       scene%mesh%period = reader%real_value('mesh', 1, 'period')
+      do i = 1, 2
+         associate (wavelength => merge(scene%lower%wavelength, scene%upper%wavelength, i == 1))
+            if (.not. wavelength > 0.0_wp) cycle
+            if (abs(scene%mesh%period/wavelength - max(anint(scene%mesh%period/wavelength), 1.0_wp)) <= significant) cycle
+            call reader%complain('mesh', 1, 'period', 'must be a whole number of wavelengths of body '//to_text(i)//', '// &
+                                 to_text(wavelength), error)
+            return
+         end associate
+      end do
       if (.not. scene%lower%rigid) scene%lower%elasticity%period = scene%mesh%period
       if (.not. scene%upper%rigid) scene%upper%elasticity%period = scene%mesh%period
    end subroutine read_period
