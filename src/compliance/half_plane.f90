@@ -211,8 +211,8 @@ contains
       normal = normal + self%mixed_ratio*direct
    end subroutine normal_by_shear
 
-   !> displacement(i) = cross (sum of tractions left of i - sum right of i), less cross 2/period (sum of tractions times their signed
-   !> distances from i) on a surface that repeats.
+   !> displacement(i) = cross (sum of tractions left of i - sum right of i), less cross 2/period (sum of tractions times their
+   !> signed distances from i) on a surface that repeats.
    pure subroutine multiply_steps(self, cross, traction, displacement)
       class(half_plane_type), intent(in) :: self
       real(wp), intent(in) :: cross, traction(:)

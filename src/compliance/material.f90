@@ -142,9 +142,9 @@ contains
    end function is_stable
 
    !> Sum a + i b and product c + i d of the roots, from (mu^2 - (a + i b) mu + c + i d)(mu^2 - (a - i b) mu + c - i d): a =
-   !> s16/s11, 2 c = k - b^2, b d = s26/s11 - a c and c^2 + d^2 = s22/s11, k = (2 s12 + s66)/s11 - a^2. So b^2 is a root of a cubic;
-   !> the largest, for the other pairs of the four roots have smaller sums of imaginary parts. Newton's iteration descends to it from
-   !> above; the other roots are apart: (Im mu1 - Im mu2)^2 and -(Re mu1 - Re mu2)^2.
+   !> s16/s11, 2 c = k - b^2, b d = s26/s11 - a c and c^2 + d^2 = s22/s11, k = (2 s12 + s66)/s11 - a^2. So b^2 is a root of a
+   !> cubic; the largest, for the other pairs of the four roots have smaller sums of imaginary parts. Newton's iteration descends
+   !> to it from above; the other roots are apart: (Im mu1 - Im mu2)^2 and -(Re mu1 - Re mu2)^2.
    pure subroutine find_roots(material)
       type(material_type), intent(inout) :: material
       real(wp) :: a, k, skew, last, square, next, c, d, slope

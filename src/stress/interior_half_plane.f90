@@ -38,8 +38,8 @@ module mfv_interior_half_plane
       real(wp), allocatable :: from(:), to(:)
       complex(wp), allocatable :: first(:), last(:)
       type(element_tree_type) :: tree
-      !> Of a surface that repeats: the distant images of the elements, and the stress along the surface without which its mean strain
-      !> would not be zero, force/length^2.
+      !> Of a surface that repeats: the distant images of the elements, and the stress along the surface without which its mean
+      !> strain would not be zero, force/length^2.
       type(periodic_images_type) :: images
       real(wp) :: lateral = 0.0_wp
    contains
@@ -280,8 +280,9 @@ contains
                             + [real(last - first, wp), aimag(last - first)]*tilted)
    end subroutine add_surface_element
 
-   !> Integrals over an element of 1/(t - z1) and u/(t - z1) dt, u from -1 to 1, and their divided differences between z1 and z2 (zero on
-   !> the surface, where they are not needed). `to_left`, `to_right`: its ends relative to both points, which are not above them.
+   !> Integrals over an element of 1/(t - z1) and u/(t - z1) dt, u from -1 to 1, and their divided differences between z1 and z2
+   !> (zero on the surface, where they are not needed). `to_left`, `to_right`: its ends relative to both points, which are not
+   !> above them.
    pure subroutine element_integrals(to_left, to_right, integral, difference)
       complex(wp), intent(in) :: to_left(2), to_right(2)
       complex(wp), intent(out) :: integral(2), difference(2)

@@ -1,5 +1,5 @@
-!> Cauchy integrals of tractions that repeat along a straight surface, sigma times (pi/l) cot(pi (t - z)/l) over one period l: beside
-!> the nearest images, which are elements like others.
+!> Cauchy integrals of tractions that repeat along a straight surface, sigma times (pi/l) cot(pi (t - z)/l) over one period l:
+!> beside the nearest images, which are elements like others.
 !>
 !> Near the surface the distant images add a function without singularities within 2.5 periods,
 !>
@@ -36,7 +36,8 @@ module mfv_periodic_images
 
 contains
 
-   !> Of elements from `from` to `to` (lengths, within half a period of 0) with sigma linear from `first` to `last`; shapes (elements).
+   !> Of elements from `from` to `to` (lengths, within half a period of 0) with sigma linear from `first` to `last`; shapes
+   !> (elements).
    pure type(periodic_images_type) function new_periodic_images(period, from, to, first, last) result(self)
       real(wp), intent(in) :: period, from(:), to(:)
       complex(wp), intent(in) :: first(:), last(:)

@@ -57,7 +57,11 @@ SCENES: dict[str, Groups] = {
         ELASTIC, ELASTIC | {"shape": "'power'", "coefficient": "2.0", "exponent": "2"}, MESH, COULOMB, PRESS, SHEAR
     ),
     "wave": scene(
-        ELASTIC, {"shape": "'wave'", "amplitude": "1e-3", "wavelength": "0.1", "rigid": ".true."}, MESH, {}, {"normal_force": "1e-3"}
+        ELASTIC,
+        {"shape": "'wave'", "amplitude": "1e-3", "wavelength": "0.1", "rigid": ".true."},
+        MESH,
+        {},
+        {"normal_force": "1e-3"},
     ),
     "profile": scene(
         ELASTIC, {"shape": "'profile'", "file": "'profile.txt'", "rigid": ".true."}, MESH, {}, {"normal_force": "1e-3"}

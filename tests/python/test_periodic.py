@@ -96,7 +96,9 @@ def dense(scene: Scene, nodes: int) -> mfv.Result:
     odd = np.clip(2 * distance / width, -1, 1) - 2 * distance / PERIOD
     normal, coupled = 2 / MODULUS / math.pi * direct, 0.5 * (1 - 2 * 0.2) * (1 + 0.2) * width * odd
     total = np.block([[normal, coupled], [-coupled, normal]]) / width
-    made = Scene(Body.matrix(x, compliance=total, width=np.full(nodes, width)), scene.upper, steps=scene.steps, friction=scene.friction)
+    made = Scene(
+        Body.matrix(x, compliance=total, width=np.full(nodes, width)), scene.upper, steps=scene.steps, friction=scene.friction
+    )
     made.coupling = scene.coupling
     return made.run(check=True)
 
@@ -107,11 +109,14 @@ def rough(seed: int, move: float = 0.0) -> Scene:
     x = np.linspace(-PERIOD / 2, PERIOD / 2, 1601)
     numbers = np.arange(1, 5)
     height = sum(
-        draw.normal() * HEIGHT / number * np.cos(2 * np.pi * number * (x - move) / PERIOD + draw.uniform(0, 6.28)) for number in numbers
+        draw.normal() * HEIGHT / number * np.cos(2 * np.pi * number * (x - move) / PERIOD + draw.uniform(0, 6.28))
+        for number in numbers
     )
     force = FULL * PERIOD * draw.uniform(0.1, 1.2)
     steps = [Step(normal_force=force, friction=bool(seed % 2))]
-    steps += [Step(normal_force=force * draw.uniform(0.7, 1.4), tangential_force=0.6 * MU * force * draw.uniform(-1, 1)) for _ in range(3)]
+    steps += [
+        Step(normal_force=force * draw.uniform(0.7, 1.4), tangential_force=0.6 * MU * force * draw.uniform(-1, 1)) for _ in range(3)
+    ]
     made = Scene(
         Body.half_plane(**PLANE),
         Body.profile(x, height - np.min(height), rigid=True, interpolation="monotone_cubic"),

@@ -707,7 +707,7 @@ contains
       pair = model%scene%near_field()
       at_jumps = model%scene%modulus()*jump/pi
       if (pair%normal > 0.0_wp) at_jumps = at_jumps/max(1.0_wp - model%scene%friction%static%largest()*abs(pair%mixed) &
-                                                                   /pair%normal, least_softness)
+                                                        /pair%normal, least_softness)
    end function pressure_at_jumps
 
    !> Larger uncertainties of edges where the exponents of the tractions are less certain (docs/verification.md): of contact with

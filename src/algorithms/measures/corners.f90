@@ -1,12 +1,12 @@
 !> Convex corners of the undeformed surfaces in contact, such as the tip of a wedge, where the pressure has no limit.
 !>
 !> Where the slope of the surfaces jumps by J the pressure is -(m J/pi) ln|x| and smooth terms, m = 1/A of mfv_near_field (wedge:
-!> Johnson 1985, section 5.2), or 1/(A + M f) where oblique surfaces slip with tau = f p. The stress along the surface is c p - a tau +
-!> b T - d N, N and T the integrals of p/(t - x) dt/pi and tau/(t - x) dt/pi (surface_stress_of in mfv_interior_half_plane). Two
-!> equations have bounded right sides: A N + M T + B tau is the slope of the gap and, where the surfaces stick, At T + M N - B p the
-!> difference e of the strains. With tau = r p next to the corner N = -B (r At + M) p/D and T = B (A + M r) p/D, D = A At - M^2, where
-!> they stick; N = -B f p/(A + M f), T = f N where they slip. An isotropic surface, pressed only (r = 0), is compressed by 1 - 2 beta or
-!> 1 + 2 beta f^2 times p, without limit; others, such as auxetic ones that stick, can be stretched.
+!> Johnson 1985, section 5.2), or 1/(A + M f) where oblique surfaces slip with tau = f p. The stress along the surface is c p - a
+!> tau + b T - d N, N and T the integrals of p/(t - x) dt/pi and tau/(t - x) dt/pi (surface_stress_of in mfv_interior_half_plane).
+!> Two equations have bounded right sides: A N + M T + B tau is the slope of the gap and, where the surfaces stick, At T + M N - B
+!> p the difference e of the strains. With tau = r p next to the corner N = -B (r At + M) p/D and T = B (A + M r) p/D, D = A At -
+!> M^2, where they stick; N = -B f p/(A + M f), T = f N where they slip. An isotropic surface, pressed only (r = 0), is compressed
+!> by 1 - 2 beta or 1 + 2 beta f^2 times p, without limit; others, such as auxetic ones that stick, can be stretched.
 module mfv_corners
    use mfv_compliance, only: block_up, block_wt
    use mfv_contact_model, only: contact_model_type

@@ -973,8 +973,8 @@ contains
       call self%end_here(MFV_NO_CONTINUATION, 'no admissible continuation: '//why//hint, error)
    end subroutine no_continuation
 
-   !> On oblique anisotropic bodies slip to one side raises the pressure. Where A - mu |M| of mfv_near_field is negative, friction grows
-   !> by more than the shear that it resists, on any mesh.
+   !> On oblique anisotropic bodies slip to one side raises the pressure. Where A - mu |M| of mfv_near_field is negative, friction
+   !> grows by more than the shear that it resists, on any mesh.
    pure function hint_of_jamming(self) result(hint)
       class(contact_path_type), intent(in) :: self
       character(len=240) :: hint
