@@ -36,6 +36,7 @@ module mfv_material
       procedure :: roots
       procedure :: stress_out_of_plane
       procedure :: pressure_stretches
+      procedure :: lateral_ratio
       procedure :: mirrored
    end type material_type
 
@@ -225,6 +226,14 @@ contains
 
       pressure_stretches = abs(aimag(self%root_product)) > 0.0_wp .or. real(self%root_product, wp) > 0.0_wp
    end function pressure_stretches
+
+   !> Stress along the surface over the mean pressure of surfaces that repeat, without which their mean strain would not be zero:
+   !> B/s11 of mfv_near_field.
+   pure real(wp) function lateral_ratio(self)
+      class(material_type), intent(in) :: self
+
+      lateral_ratio = self%compliance(s12)/self%compliance(s11) - real(self%root_product, wp)
+   end function lateral_ratio
 
    !> The material of the mirror image at the surface: that of an upper body, seen as a lower one.
    pure type(material_type) function mirrored(self) result(image)

@@ -96,10 +96,7 @@ contains
       if (upper) seen%pair = zones%pair%with_reversed_shear()
       if (radial) seen%turn = self%outward/body%radius
       call find_traction_elements(arc, width, pressure, self%side*shear, seen, longest, self%elements)
-      if (zones%joined) then
-         self%elements%sharp = .false.
-         self%elements%singular = .false.
-      end if
+      if (zones%joined) call join_ends(self%elements, body%elasticity%period)
       associate (e => self%elements)
          if (self%body%deforms_as_circle()) then
             self%length = body%radius
@@ -114,7 +111,7 @@ contains
          else
             associate (material => body%elasticity%material, period => body%elasticity%period/self%length)
                if (period > 0.0_wp) then
-                  self%half_plane = new_half_plane_load(material, e%from, e%to, e%first, e%last, period)
+                  self%half_plane = new_half_plane_load(material, e%from, e%to, e%first, e%last, period, zones%middle/self%length)
                else
                   self%half_plane = new_half_plane_load(material, e%from, e%to, e%first, e%last)
                end if
@@ -122,6 +119,21 @@ contains
          end if
       end associate
    end subroutine new_interior
+
+   !> Let tractions that meet at the ends of a period be continuous there, which were found from the nodes to one side each.
+   pure subroutine join_ends(elements, period)
+      type(traction_elements_type), intent(inout) :: elements
+      real(wp), intent(in) :: period
+      integer :: n
+
+      elements%sharp = .false.
+      elements%singular = .false.
+      n = size(elements%from)
+      if (n == 0) return
+      if (abs(elements%to(n) - elements%from(1) - period) > significant*period) return
+      elements%first(1) = 0.5_wp*(elements%first(1) + elements%last(n))
+      elements%last(n) = elements%first(1)
+   end subroutine join_ends
 
    !> sigma_rr + i sigma_rtheta on the circle at the angle theta, from p + i tau; `radial`: see new_interior.
    elemental complex(wp) function polar(self, radial, angle, traction)

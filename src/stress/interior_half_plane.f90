@@ -22,6 +22,7 @@ module mfv_interior_half_plane
    use mfv_logarithms, only: log_ratio
    use mfv_material, only: material_type
    use mfv_periodic_images, only: images_each_side, new_periodic_images, periodic_images_type
+   use mfv_tolerances, only: significant
    implicit none
    private
    public :: half_plane_load_type, new_half_plane_load, line_load_stress, surface_stress_of
@@ -42,6 +43,8 @@ module mfv_interior_half_plane
       !> strain would not be zero, force/length^2.
       type(periodic_images_type) :: images
       real(wp) :: lateral = 0.0_wp
+      !> Middle of the period, from which places are measured here, length.
+      real(wp) :: middle = 0.0_wp
    contains
       procedure :: stress
       procedure :: surface_stress
@@ -51,13 +54,15 @@ module mfv_interior_half_plane
 contains
 
    !> Elements from `from` to `to`, lengths (ascending, for speed), with tractions p + i tau linear from `first` to `last`,
-   !> force/length^2; shapes (elements). `period`: length after which they repeat, about 0; by default not.
-   pure type(half_plane_load_type) function new_half_plane_load(material, from, to, first, last, period) result(self)
+   !> force/length^2; shapes (elements). `period`: length after which they repeat, by default not; `middle`
+   !> of the period with the elements, length.
+   pure type(half_plane_load_type) function new_half_plane_load(material, from, to, first, last, period, middle) &
+      result(self)
       type(material_type), intent(in) :: material
       real(wp), intent(in) :: from(:), to(:)
       complex(wp), intent(in) :: first(:), last(:)
-      real(wp), intent(in), optional :: period
-      integer :: m
+      real(wp), intent(in), optional :: period, middle
+      integer :: m, n
 
       self%material = material
       self%root = material%roots()
@@ -66,16 +71,21 @@ contains
       self%first = first
       self%last = last
       if (present(period)) then
+         if (present(middle)) self%middle = middle
          associate (images => [(m, m=-images_each_side, images_each_side)])
-            self%from = [(from + m*period, m=-images_each_side, images_each_side)]
-            self%to = [(to + m*period, m=-images_each_side, images_each_side)]
+            self%from = [(from - self%middle + m*period, m=-images_each_side, images_each_side)]
+            self%to = [(to - self%middle + m*period, m=-images_each_side, images_each_side)]
+            n = size(from)
+            if (n > 0) then
+               ! The same numbers where images meet: the logarithms there cancel.
+               if (abs(to(n) - from(1) - period) < significant*period) &
+                  self%to(n::n) = from(1) - self%middle + [(m*period, m=1 - images_each_side, images_each_side + 1)]
+            end if
             self%first = [(first, m=1, size(images))]
             self%last = [(last, m=1, size(images))]
          end associate
-         self%images = new_periodic_images(period, from, to, first, last)
-         associate (s => material%compliance)
-            self%lateral = (s(2)/s(1) - real(material%root_product, wp))*sum(0.5_wp*real(first + last, wp)*(to - from))/period
-         end associate
+         self%images = new_periodic_images(period, from - self%middle, to - self%middle, first, last)
+         self%lateral = material%lateral_ratio()*sum(0.5_wp*real(first + last, wp)*(to - from))/period
       end if
       self%tree = new_straight_tree(self%from, self%to, self%first, self%last)
    end function new_half_plane_load
@@ -88,7 +98,7 @@ contains
       real(wp) :: stress(3)
       complex(wp) :: sums(4), other(4), points(2)
 
-      points = x - self%root*depth
+      points = x - self%middle - self%root*depth
       if (.not. self%images%period > 0.0_wp) then
          sums = near_sums(self, points)
       else
@@ -199,7 +209,7 @@ contains
       integer :: near(2, self%tree%leaves()), number, j, k
 
       place = x
-      if (self%images%period > 0.0_wp) place = x - self%images%period*anint(x/self%images%period)
+      if (self%images%period > 0.0_wp) place = real(sum(self%images%move_into_period([cmplx(x - self%middle, 0.0_wp, wp)])), wp)
       surface = place
       call self%tree%find_distant(surface, distant, near, number)
       if (self%images%period > 0.0_wp) call self%images%add_distant(surface, distant)
@@ -234,7 +244,7 @@ contains
 
       traction = 0.0_wp
       place = x
-      if (self%images%period > 0.0_wp) place = x - self%images%period*anint(x/self%images%period)
+      if (self%images%period > 0.0_wp) place = real(sum(self%images%move_into_period([cmplx(x - self%middle, 0.0_wp, wp)])), wp)
       j = last_not_above(self%from, place)
       if (j == 0) return
       if (place > self%to(j) .or. .not. self%to(j) > self%from(j)) return

@@ -133,7 +133,8 @@ contains
       largest%value = max(interior%bulk, 0.0_wp)
       if (.not. interior%half_width() > 0.0_wp) return
       stretches = interior%body%elasticity%material%pressure_stretches()
-      if (.not. (interior%body%deforms_as_circle() .or. interior%is_sheared() .or. stretches)) return
+      if (.not. (interior%body%deforms_as_circle() .or. interior%is_sheared() .or. stretches .or. &
+                 interior%body%elasticity%period > 0.0_wp)) return
       if (interior%elements%singular .or. (interior%elements%sharp .and. stretches)) then
          largest%value = ieee_value(1.0_wp, ieee_quiet_nan)
          return
@@ -167,8 +168,8 @@ contains
          beside = pack(beside, beside <= pi*interior%body%radius - max(abs(inside(1)), abs(inside(size(inside)))))
       places = [inside(1) - beside(size(beside):1:-1), inside, inside(size(inside)) + beside]
       ! Beside the contact there is another one.
-      associate (period => interior%body%elasticity%period)
-         if (period > 0.0_wp) places = [-0.5_wp*period, pack(places, abs(places) < 0.5_wp*period), 0.5_wp*period]
+      associate (half => 0.5_wp*interior%body%elasticity%period, middle => interior%middle())
+         if (half > 0.0_wp) places = [middle - half, pack(places, abs(places - middle) < half), middle + half]
       end associate
    end function candidates
 

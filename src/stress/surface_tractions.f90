@@ -32,6 +32,8 @@ module mfv_surface_tractions
       real(wp) :: turn = 0.0_wp
       !> Whether sharp edges are ends of a period, beyond which the surface repeats.
       logical :: joined = .false.
+      !> Middle of that period, length.
+      real(wp) :: middle = 0.0_wp
       !> Minimum of elements in all contact zones: with fewer, the point of the largest von Mises stress, a flat maximum, would
       !> move to their ends.
       integer :: fewest_elements = 300

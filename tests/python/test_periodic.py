@@ -127,6 +127,12 @@ def rough(seed: int, move: float = 0.0) -> Scene:
     return made
 
 
+def in_order(result: mfv.Result, name: str) -> Numbers:
+    """A field from -l/2 to l/2. (The mesh begins where the gap is widest.)"""
+    x = np.asarray(result.mesh.x)
+    return np.asarray(result.state[name])[np.argsort(x - PERIOD * np.round(x / PERIOD))]
+
+
 @pytest.mark.parametrize("seed", range(100 if os.environ.get("MFV_DEEP") else 12))
 def test_a_dense_matrix_gives_the_same(seed: int) -> None:
     """Tractions to round-off and the same events, also where the contact spans the ends of the period."""
@@ -136,7 +142,7 @@ def test_a_dense_matrix_gives_the_same(seed: int) -> None:
     one = scene.run(check=True)
     scale = np.max(other.state.pressure)
     for name in ("pressure", "shear"):
-        np.testing.assert_allclose(getattr(one.state, name), getattr(other.state, name), rtol=0, atol=3e-12 * scale, err_msg=name)
+        np.testing.assert_allclose(in_order(one, name), other.state[name], rtol=0, atol=3e-12 * scale, err_msg=name)
     assert one.summary.events == other.summary.events
     for name in ("approach", "shift", "dissipation"):
         assert getattr(one.summary, name) == pytest.approx(getattr(other.summary, name), rel=1e-9, abs=1e-14), name
@@ -144,8 +150,9 @@ def test_a_dense_matrix_gives_the_same(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(6))
 def test_the_ends_of_the_period_are_nothing_special(seed: int) -> None:
-    """A surface moved by whole intervals: the same tractions, moved, whatever spans the ends of the period."""
-    nodes, by = 60, 23
+    """A surface moved by whole intervals: the same tractions, observables, warnings and stresses, whatever spans the ends of the period.
+    (The profile is interpolated between its points.)"""
+    nodes, by = 80, 23
     results = []
     for move in (0.0, by * PERIOD / nodes):
         scene = rough(seed, move)
@@ -153,15 +160,52 @@ def test_the_ends_of_the_period_are_nothing_special(seed: int) -> None:
         results.append(scene.run(check=True))
     one, other = results
     scale = np.max(one.state.pressure)
-    # The profile is interpolated between its points.
     for name in ("pressure", "shear"):
-        np.testing.assert_allclose(np.roll(getattr(one.state, name), by), getattr(other.state, name), rtol=0, atol=2e-3 * scale)
-    assert other.summary.dissipation == pytest.approx(one.summary.dissipation, rel=1e-2)
-    for place in (0.3, -0.9):
-        here = mfv.stress.stress(one, [place], [-0.2])
-        there = mfv.stress.stress(other, [place + by * PERIOD / nodes], [-0.2])
+        np.testing.assert_allclose(np.roll(in_order(one, name), by), in_order(other, name), rtol=0, atol=2e-3 * scale)
+    assert set(one.observables) == set(other.observables)
+    for name in ("dissipation", "stick_ratio", "contact_length", "patches", "peak_pressure", "peak_shear", "lower_tension"):
+        if name in one.observables:
+            assert other.observables[name] == pytest.approx(one.observables[name], rel=1e-2), name
+    x = np.linspace(-2.0, 2.0, 33)
+    for y in (0.0, -0.2):
+        here = mfv.stress.stress(one, x, np.full_like(x, y))
+        there = mfv.stress.stress(other, x + by * PERIOD / nodes, np.full_like(x, y))
         for name in ("sigma_xx", "sigma_yy", "sigma_xy"):
-            assert there[name][0] == pytest.approx(here[name][0], abs=1e-2 * scale)
+            np.testing.assert_allclose(there[name], here[name], rtol=0, atol=3e-2 * scale, err_msg=f"{name} at {y}")
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_two_periods_are_twice_one(seed: int) -> None:
+    """The period and the forces doubled: the same tractions, twice the dissipation."""
+    one = rough(seed)
+    one.mesh = Mesh(nodes=40, period=PERIOD)
+    two = rough(seed)
+    x, height = np.asarray(two.upper.data["x"]), np.asarray(two.upper.data["height"])  # type: ignore[index]
+    doubled = np.concatenate([x[:-1] - PERIOD / 2, x + PERIOD / 2])
+    two.upper = Body.profile(doubled, np.concatenate([height[:-1], height]), rigid=True, interpolation="monotone_cubic")
+    for step in two.steps:
+        for name in ("normal_force", "tangential_force"):
+            if getattr(step, name) is not None:
+                setattr(step, name, 2 * getattr(step, name))
+    two.mesh = Mesh(nodes=80, period=2 * PERIOD)
+    first, second = one.run(check=True), two.run(check=True)
+    assert second.summary.dissipation == pytest.approx(2 * first.summary.dissipation, rel=1e-4)
+    assert np.max(second.state.pressure) == pytest.approx(np.max(first.state.pressure), rel=1e-4)
+    assert np.max(np.abs(second.state.shear)) == pytest.approx(np.max(np.abs(first.state.shear)), rel=1e-4)
+
+
+@pytest.mark.parametrize("nodes", [36, 54, 72, 78, 140])
+def test_tension_in_full_contact_has_no_spikes(nodes: int) -> None:
+    """Where images of the tractions meet, at the ends of the period, logarithms cancel."""
+    found = wave(1.6, nodes, [Step(force_ratio=0.5)], "full").observables
+    fine = wave(1.6, 400, [Step(force_ratio=0.5)], "full").observables
+    assert found.lower_tension == pytest.approx(fine.lower_tension, rel=2e-2)
+
+
+def test_open_surfaces_are_in_tension_without_shear() -> None:
+    """Without mean strain: B/s11 times the mean pressure."""
+    found = wave(0.5, 101, []).observables
+    assert found.lower_tension == pytest.approx((1 - 2 * 0.2) / (1 - 0.2) * 0.5 * FULL, rel=1e-12)
 
 
 def test_it_tends_to_half_planes_as_the_period_grows() -> None:

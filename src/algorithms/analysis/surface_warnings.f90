@@ -9,7 +9,7 @@ module mfv_surface_warnings
    use mfv_profile_sampling, only: negligible_pressure, pressure_of_wave
    use mfv_simulation, only: simulation_type
    use mfv_strings, only: add_text, string_type, to_text
-   use mfv_tolerances, only: significant, visible
+   use mfv_tolerances, only: significant
    implicit none
    private
    public :: warn_of_surface
@@ -33,6 +33,7 @@ contains
       if (.not. any(contact)) return
       call check_end
       if (body%is_sampled()) call check_interpolation
+      if (body%is_sampled() .and. simulation%contact%model%scene%mesh%period > 0.0_wp) call check_step
       if (body%dropouts > 0) call warn_of_dropouts
       if (.not. body%is_pointed()) return
       angle = atan(body%coefficient)*180.0_wp/pi
@@ -41,6 +42,20 @@ contains
                                                to_text(largest_angle, 2)//' degrees')
 
    contains
+
+      !> A profile that does not repeat, from one end of the period to the other.
+      subroutine check_step()
+         real(wp), parameter :: visible_step = 0.01_wp
+         real(wp) :: ends(2), heights(2)
+
+         ends = 0.5_wp*simulation%contact%model%scene%mesh%period*[-1, 1]
+         if (.not. all(body%has_surface(ends))) return
+         heights = body%recess(ends, .false.)
+         if (abs(heights(2) - heights(1)) <= visible_step*(maxval(body%height) - minval(body%height))) return
+         call add_text(warnings, 'the heights of the profile of the '//name//' body differ by '// &
+                       to_text(abs(heights(2) - heights(1)), 3)//' at the ends of the period: it has a step there, and '// &
+                       'tractions in contact with it are those at a sharp corner')
+      end subroutine check_step
 
       !> Points of a measurement without a value are not in its profile.
       subroutine warn_of_dropouts()
@@ -68,8 +83,7 @@ contains
                                 to_text(corner(side))//': the contact ends at x = '//to_text(end_of(i, side), 4)// &
                                 ' instead; choose &mesh half_width and nodes accordingly, or omit half_width')
                else
-                  if (simulation%contact%model%scene%mesh%period > 0.0_wp .and. &
-                      abs(end_of(i, side)) > 0.5_wp*simulation%contact%model%scene%mesh%period*(1.0_wp - visible)) cycle
+                  if (simulation%contact%model%scene%repeats_beyond(end_of(i, side))) cycle
                   call add_text(warnings, 'the contact reaches the end of the surface of the '//name//' body, near x = '// &
                                 to_text(simulation%contact%model%x(i), 4)//' and cannot grow beyond it: tractions and '// &
                                 'stresses there are those at a sharp corner; extend the surface unless the corner is real')

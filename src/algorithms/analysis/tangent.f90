@@ -28,12 +28,12 @@ module mfv_tangent
 
 contains
 
-   !> tangent(i, j): derivative of the force of motion i with respect to motion j (mfv_motions), shape (motions, motions),
-   !> motions from 2 to motion_count; the others are fixed. `direction`: of the next motions, shape (motions), of any length;
-   !> friction acts, if the scene has any. If omitted, statuses are unchanged, but nodes that were pressed without friction stick,
-   !> if the scene has friction: whatever small motion follows, no shear reaches the friction limit at once. Zero without contact
-   !> and, for the shift, without friction. Errors MFV_BAD_ARGUMENT: singular contact, or a direction of zeros; others: the run in
-   !> this direction fails.
+   !> tangent(i, j): derivative of the force of motion i with respect to motion j (mfv_motions), shape (motions, motions), motions
+   !> from 2 to motion_count; the others are fixed. `direction`: of the next motions, shape (motions), of any length; friction
+   !> acts, if the scene has any. If omitted, statuses are unchanged, but nodes that were pressed without friction stick, if the
+   !> scene has friction: whatever small motion follows, no shear reaches the friction limit at once. Zero without contact and,
+   !> for the shift, without friction. Errors MFV_BAD_ARGUMENT: singular contact, a direction of zeros, or motions that surfaces
+   !> do not have that repeat; others: the run in this direction fails.
    subroutine find_tangent(path, tangent, error, direction)
       type(contact_path_type), intent(in) :: path
       real(wp), intent(out) :: tangent(:, :)
@@ -45,6 +45,11 @@ contains
       integer :: i
 
       tangent = 0.0_wp
+      if (any([(.not. path%model%scene%can_repeat(i), i=1, size(tangent, 1))])) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'surfaces that repeat (period in &mesh) have no rotation and no '// &
+                        'bulk stress: the tangent has two motions')
+         return
+      end if
       sticks = any(path%state%status == node_frictionless) .and. path%model%scene%friction%acts()
       if (.not. (present(direction) .or. sticks) .and. all(path%model%moves(:size(tangent, 1)))) then
          ! The solver changes in use: work on a copy, so that results of the original stay bit-identical.

@@ -267,6 +267,10 @@ contains
          estimates([candidate_tension(side), candidate_von_mises(side)]) = -1.0_wp
          if (.not. has_interior(body)) return
          bulk = state%fields%motion(bulk_motions(side))
+         ! Surfaces that repeat have no bulk stress, but one that keeps their mean strain zero.
+         associate (period => model%scene%mesh%period)
+            if (period > 0.0_wp) bulk = body%elasticity%material%lateral_ratio()*sum(state%fields%pressure*model%width)/period
+         end associate
          ! A circle is in tension also beside a contact without shear, in proportion to the force.
          hoop = 0.0_wp
          if (body%deforms_as_circle()) hoop = state%fields%force(motion_approach)/(pi*body%radius)
@@ -410,7 +414,7 @@ contains
       !> Depths over the half-width, up to that of the largest stress under an ellipse of pressure.
       real(wp), parameter :: depths(6) = [0.1_wp, 0.2_wp, 0.3_wp, 0.4_wp, 0.55_wp, 0.7_wp]
       real(wp) :: sign, depth, below(3)
-      integer :: i, j, k
+      integer :: i, j, k, m
 
       sign = merge(1.0_wp, -1.0_wp, side == 1)
       largest = of_components(bulk, 0.0_wp, 0.0_wp)
@@ -422,8 +426,14 @@ contains
             depth = 0.5_wp*depths(k)*patches(i)%length()
             do j = 1, across
                associate (place => patches(i)%left + patches(i)%length()*(j - 0.5_wp)/across)
-                  below = line_load_stress(body%elasticity%material, model%arc - place, depth, model%width*state%fields%pressure, &
-                                           sign*model%width*state%fields%shear)
+                  below = 0.0_wp
+                  ! With the nearest images.
+                  do m = -1, 1
+                     if (m /= 0 .and. .not. model%scene%mesh%period > 0.0_wp) cycle
+                     below = below + line_load_stress(body%elasticity%material, model%arc - place + m*model%scene%mesh%period, &
+                                                      depth, model%width*state%fields%pressure, &
+                                                      sign*model%width*state%fields%shear)
+                  end do
                end associate
                largest = max(largest, of_components(bulk + below(1), below(2), below(3)))
             end do

@@ -367,7 +367,8 @@ contains
 
          associate (beyond => edge + side*visible*model%width(node))
             rises = growth*state%fields%pressure(node) > maxval(state%fields%pressure) .and. &
-                    is_beyond_surface(model, beyond) .and. .not. is_beyond_corner(model, beyond)
+                    is_beyond_surface(model, beyond) .and. .not. is_beyond_corner(model, beyond) .and. &
+                    .not. model%scene%repeats_beyond(beyond)
          end associate
       end function rises
    end function rises_at_end

@@ -14,6 +14,7 @@ module mfv_contact_model
    use mfv_kinds, only: pi, wp
    use mfv_lapack, only: ddot
    use mfv_quadrature, only: gauss_points
+   use mfv_tolerances, only: significant
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
                           motion_upper_bulk, motion_wear, arm_unit
    use mfv_reference_indenter, only: indenter_type
@@ -109,6 +110,7 @@ contains
       model%tangential = scene%tangential()
       model%moves = scene%moves()
       call choose_mesh(scene, nodes, interval, model%growing)
+      if (covers_period(scene, nodes, interval) .and. .not. scene%mesh%has_middle) call choose_middle(model%scene, nodes)
       call model%build_compliance(nodes, interval)
       allocate (model%worn(nodes), model%wear(nodes), source=0.0_wp)
       call model%place_nodes()
@@ -123,15 +125,16 @@ contains
       integer :: circle
 
       nodes = scene%mesh%nodes
-      growing = .not. (allocated(scene%mesh%ends) .or. scene%lower%is_matrix() .or. scene%mesh%period > 0.0_wp)
+      growing = .not. (allocated(scene%mesh%ends) .or. scene%lower%is_matrix())
       if (allocated(scene%mesh%ends)) then
          nodes = size(scene%mesh%ends) - 1
          interval = (scene%mesh%ends(nodes + 1) - scene%mesh%ends(1))/nodes
       else if (scene%lower%is_matrix()) then
          nodes = size(scene%lower%position)
          interval = sum(scene%lower%elasticity%width)/nodes
-      else if (scene%mesh%period > 0.0_wp) then
+      else if (scene%mesh%period > 0.0_wp .and. .not. small_in_period(scene)) then
          interval = scene%mesh%period/nodes
+         growing = .false.
       else if (scene%mesh%whole_circle) then
          interval = 2.0_wp*pi*scene%arc_radius()/nodes
          circle = nodes
@@ -144,6 +147,28 @@ contains
          if (needs_equal_intervals(scene)) interval = 2.0_wp*pi*scene%arc_radius()/circle_intervals(scene%arc_radius(), interval)
       end if
    end subroutine choose_mesh
+
+   !> Whether a mesh that is to be refined begins about a contact much smaller than the period.
+   logical function small_in_period(scene)
+      type(scene_type), intent(in) :: scene
+      real(wp), parameter :: small = 0.05_wp
+      real(wp) :: expected
+
+      small_in_period = .false.
+      if (.not. scene%mesh%refined) return
+      expected = largest_half_width(scene, scene%mesh%period)
+      small_in_period = expected > 0.0_wp .and. expected < small*scene%mesh%period
+   end function small_in_period
+
+   !> Whether equal intervals cover the period of surfaces that repeat.
+   pure logical function covers_period(scene, nodes, interval)
+      type(scene_type), intent(in) :: scene
+      integer, intent(in) :: nodes
+      real(wp), intent(in) :: interval
+
+      covers_period = scene%mesh%period > 0.0_wp .and. .not. allocated(scene%mesh%ends) .and. &
+                      nodes*interval > scene%mesh%period*(1.0_wp - significant)
+   end function covers_period
 
    !> Whether there is a length from which to choose a mesh: that of the user, of a shape, or of the contact under the targets of
    !> the steps.
@@ -490,7 +515,7 @@ contains
          self%arc = middles(self%scene%mesh%ends)
          self%width = self%scene%mesh%ends(2:) - self%scene%mesh%ends(:n)
       else
-         self%arc = [(0.5_wp*self%interval()*(2*i - n - 1), i=1, n)]
+         self%arc = self%scene%mesh%middle + [(0.5_wp*self%interval()*(2*i - n - 1), i=1, n)]
          self%width = spread(self%interval(), 1, n)
       end if
       self%x = self%scene%x_of_arc(self%arc)
@@ -501,11 +526,33 @@ contains
       end if
       self%initial_gap = self%initial_gap + self%worn
       self%can_touch = self%scene%touchable(self%arc)
-      self%static_friction = self%scene%friction%static%at(self%x)
-      self%kinetic_friction = self%scene%friction%kinetic%at(self%x)
+      self%static_friction = self%scene%friction%static%at(self%scene%x_in_period(self%x))
+      self%kinetic_friction = self%scene%friction%kinetic%at(self%scene%x_in_period(self%x))
       self%friction_scale = min(self%scene%friction%static%largest(), 1.0_wp)
       call place_arms(self)
    end subroutine place_nodes
+
+   !> Choose the period that a mesh of `nodes` intervals covers so that its ends, where what spans them is counted twice, are last
+   !> to touch: between the neighbours with the widest gap; about the origin if that is also at the ends of the period there.
+   subroutine choose_middle(scene, nodes)
+      type(scene_type), intent(inout) :: scene
+      integer, intent(in) :: nodes
+      real(wp) :: gap(nodes), both(nodes), arc(nodes)
+      integer :: i, widest
+
+      scene%mesh%middle = 0.0_wp
+      scene%mesh%has_middle = .true.
+      arc = [(0.5_wp*scene%mesh%period/nodes*(2*i - nodes - 1), i=1, nodes)]
+      gap = gap_at(scene, arc)
+      where (.not. scene%touchable(arc)) gap = huge(1.0_wp)/nodes
+      ! Of each node and the next one; the last and the first are neighbours, too.
+      both = gap + cshift(gap, 1)
+      widest = maxloc(both, dim=1)
+      if (both(nodes) >= both(widest)*(1.0_wp - significant)) return
+      associate (end => arc(widest) + 0.5_wp*scene%mesh%period/nodes)
+         scene%mesh%middle = end - sign(0.5_wp*scene%mesh%period, end)
+      end associate
+   end subroutine choose_middle
 
    !> Undeformed gaps at arc lengths from the origin of x, lengths.
    function gap_at(scene, arc) result(gap)
@@ -516,7 +563,7 @@ contains
       if (scene%mesh%radial) then
          gap = radial_gap_between(scene%lower, scene%upper, arc/scene%arc_radius())
       else
-         gap = gap_between(scene%lower, scene%upper, scene%x_of_arc(arc), scene%mesh%parabolic)
+         gap = gap_between(scene%lower, scene%upper, scene%x_in_period(scene%x_of_arc(arc)), scene%mesh%parabolic)
       end if
    end function gap_at
 

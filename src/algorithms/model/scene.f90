@@ -118,8 +118,10 @@ module mfv_scene
       logical :: parabolic = .false.
       !> Whether normals are radial instead of vertical: for a disk in a hole.
       logical :: radial = .false.
-      !> Length after which both surfaces and all loads repeat, about the origin of x; 0: they do not.
-      real(wp) :: period = 0.0_wp
+      !> Length after which both surfaces and all loads repeat; 0: they do not. Middle of the period that the mesh covers, length,
+      !> and whether it has been chosen: with the widest gap at the ends.
+      real(wp) :: period = 0.0_wp, middle = 0.0_wp
+      logical :: has_middle = .false.
    contains
       procedure :: nodes_for
    end type mesh_request_type
@@ -153,6 +155,8 @@ module mfv_scene
       procedure :: datum
       procedure :: arc_radius
       procedure :: x_of_arc
+      procedure :: x_in_period
+      procedure :: repeats_beyond
       procedure :: touchable
       procedure :: last_touchable
       procedure :: can_have_bulk_stress
@@ -383,6 +387,24 @@ contains
       if (radius > 0.0_wp) x = radius*sin(arc/radius)
    end function x_of_arc
 
+   !> Whether an arc length is an end of the period, beyond which the surfaces repeat.
+   elemental logical function repeats_beyond(self, arc)
+      class(scene_type), intent(in) :: self
+      real(wp), intent(in) :: arc
+
+      repeats_beyond = self%mesh%period > 0.0_wp .and. &
+                       abs(arc - self%mesh%middle) > 0.5_wp*self%mesh%period*(1.0_wp - visible)
+   end function repeats_beyond
+
+   !> The same x, length, or its image in the period about the origin.
+   elemental real(wp) function x_in_period(self, x) result(image)
+      class(scene_type), intent(in) :: self
+      real(wp), intent(in) :: x
+
+      image = x
+      if (self%mesh%period > 0.0_wp) image = x - self%mesh%period*anint(x/self%mesh%period)
+   end function x_in_period
+
    !> Whether both bodies have a surface at an arc length (length) from the origin of x: on a circle up to 90 degrees; with radial
    !> normals, where the radius of the hole meets the disk; of surfaces that repeat within one period.
    elemental logical function touchable(self, arc)
@@ -391,14 +413,14 @@ contains
       real(wp) :: radius, x
 
       radius = self%arc_radius()
-      x = self%x_of_arc(arc)
+      x = self%x_in_period(self%x_of_arc(arc))
       if (self%mesh%radial) then
          touchable = abs(x)*abs(self%lower%radius - self%upper%radius) < radius*min(self%lower%radius, self%upper%radius)
       else
          touchable = self%lower%covers(x, self%mesh%parabolic) .and. self%upper%covers(x, self%mesh%parabolic)
       end if
       if (radius > 0.0_wp) touchable = touchable .and. abs(arc) < 0.5_wp*pi*radius
-      if (self%mesh%period > 0.0_wp) touchable = touchable .and. abs(arc) < 0.5_wp*self%mesh%period
+      if (self%mesh%period > 0.0_wp) touchable = touchable .and. abs(arc - self%mesh%middle) < 0.5_wp*self%mesh%period
    end function touchable
 
    !> `outside`, or the end of the surface between it and `inside` (by bisection); arc lengths.
@@ -471,9 +493,10 @@ contains
          end do
       end do
       zones%joined = self%mesh%period > 0.0_wp
-      if (zones%joined) zones%joined = all(abs(pack(zones%contact, zones%sharp)) > 0.5_wp*self%mesh%period*(1.0_wp - visible))
+      if (zones%joined) zones%joined = all(self%repeats_beyond(pack(zones%contact, zones%sharp)))
       zones%contact = ratio*zones%contact
       if (self%coupling == coupling_full) zones%pair = self%near_field()
+      zones%middle = self%mesh%middle
       if (present(fewest_elements)) zones%fewest_elements = fewest_elements
       if (upper) then
          call new_interior(self%upper, upper, self%mesh%radial, ratio*arc, ratio*width, pressure/ratio, &

@@ -137,7 +137,7 @@ contains
       type(catalogue_type), intent(inout) :: keys
 
       call keys%add('mesh', 'nodes', kind_integer, 'number of equal intervals; nodes are their centres; without '// &
-                    'half_width, half_angle and ends more by default for a small accuracy in &solver', default='101', &
+                    'half_width, half_angle, period and ends more by default for a small accuracy in &solver', default='101', &
                     lower=1.0_wp, upper=most_nodes)
       call keys%add('mesh', 'half_width', kind_real, 'the intervals cover [-half_width, half_width] along the surface; if '// &
                     'omitted: chosen from an estimate of the contact, and extended when the contact reaches its '// &
@@ -147,7 +147,7 @@ contains
                     'intervals cover this angle on either side; 180: the whole circle, of which only the nodes near the '// &
                     'contact are computed', unit='degrees', above=0.0_wp, upper=180.0_wp)
       call keys%add('mesh', 'period', kind_real, 'instead of half_width: surfaces, loads and mesh repeat after this length '// &
-                    'along the surface, about x = 0; forces are those of one period', unit='length', above=0.0_wp)
+                    'along the surface; forces are those of one period', unit='length', above=0.0_wp)
       call keys%add('mesh', 'refine', kind_choice, 'edges: unequal intervals, small at the edges of contact and stick zones at '// &
                     'the ends of the steps, which are found on coarser meshes; without nodes their number follows from '// &
                     'accuracy in &solver', default='none', choices='none edges')

@@ -66,7 +66,9 @@ contains
                               error)
          return
       end if
-      if (.not. can_choose_mesh(scene)) then
+      if (.not. can_choose_mesh(scene) .and. max(scene%lower%wavelength, scene%upper%wavelength) > 0.0_wp) then
+         call reader%complain('mesh', 1, 'period', 'is needed for a wave, or half_width', error)
+      else if (.not. can_choose_mesh(scene)) then
          call reader%complain('mesh', 1, 'half_width', 'is needed: no step has a normal_force or approach to choose it from', &
                               error)
       else if (.not. has_touchable_node(scene) .and. scene%lower%is_matrix()) then
