@@ -45,11 +45,20 @@ VARIANTS = {
         "&body shape='power', coefficient=2.0, exponent=4, rigid=.true. /",
         "&body shape='profile', file='columns.txt', interpolation='monotone_cubic', level='line', height_scale=-1, rigid=.true. /",
         "&body shape='profile', file='columns.txt', rigid=.true. /",
+        "&body shape='wave', amplitude=1e-3, wavelength=0.1, rigid=.true. /",
     ],
     "&body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /": [
         "&body shape='hole', radius=0.26, youngs_modulus=2.6, poisson_ratio=0.3, datum=1.0 /",
+        "&body shape='half_plane', elasticity='orthotropic', youngs_modulus_1=3, youngs_modulus_2=1, youngs_modulus_3=1, "
+        "poisson_ratio_12=0.3, poisson_ratio_13=0.3, poisson_ratio_23=0.3, shear_modulus_12=0.5, axis_angle=30 /",
+        "&body shape='half_plane', elasticity='anisotropic', compliances=1, -0.3, 1, 0.1, 0, 2.6, -0.3, -0.3, 1, 0 /",
     ],
-    "&mesh nodes=21, half_width=0.01225 /": ["&mesh nodes=21 /", "&mesh nodes=21, half_width=0.03, gap='parabolic' /", ""],
+    "&mesh nodes=21, half_width=0.01225 /": [
+        "&mesh nodes=21 /",
+        "&mesh nodes=21, half_width=0.03, gap='parabolic' /",
+        "&mesh nodes=21, period=0.1 /",
+        "",
+    ],
     "&friction law='coulomb', mu=0.7 /": [
         "&friction law='static_kinetic', mu_static=0.7, mu_kinetic=0.5 /",
         "&friction law='weakening', mu_static=0.7, mu_kinetic=0.5, weakening_distance=1e-4 /",
