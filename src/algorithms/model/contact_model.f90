@@ -532,26 +532,29 @@ contains
       call place_arms(self)
    end subroutine place_nodes
 
-   !> Choose the period that a mesh of `nodes` intervals covers so that its ends, where what spans them is counted twice, are last
-   !> to touch: between the neighbours with the widest gap; about the origin if that is also at the ends of the period there.
+   !> Choose the period that a mesh of `nodes` intervals covers so that its ends, where what spans them is counted twice, are last to
+   !> touch: where the gap is widest, at an end of an interval. The period about the origin if it is also widest at its ends, or at
+   !> opposite places.
    subroutine choose_middle(scene, nodes)
       type(scene_type), intent(inout) :: scene
       integer, intent(in) :: nodes
-      real(wp) :: gap(nodes), both(nodes), arc(nodes)
-      integer :: i, widest
+      integer, parameter :: samples = 2000
+      real(wp), parameter :: nearly = 1.0e-4_wp
+      real(wp) :: gap(0:samples), end(0:samples), interval
+      logical :: is_widest(0:samples)
+      integer :: i, farthest
 
       scene%mesh%middle = 0.0_wp
       scene%mesh%has_middle = .true.
-      arc = [(0.5_wp*scene%mesh%period/nodes*(2*i - nodes - 1), i=1, nodes)]
-      gap = gap_at(scene, arc)
-      where (.not. scene%touchable(arc)) gap = huge(1.0_wp)/nodes
-      ! Of each node and the next one; the last and the first are neighbours, too.
-      both = gap + cshift(gap, 1)
-      widest = maxloc(both, dim=1)
-      if (both(nodes) >= both(widest)*(1.0_wp - significant)) return
-      associate (end => arc(widest) + 0.5_wp*scene%mesh%period/nodes)
-         scene%mesh%middle = end - sign(0.5_wp*scene%mesh%period, end)
-      end associate
+      end = [(scene%mesh%period*(real(i, wp)/samples - 0.5_wp), i=0, samples)]
+      gap = gap_at(scene, end*(1.0_wp - significant))
+      where (.not. scene%touchable(end*(1.0_wp - significant))) gap = huge(1.0_wp)
+      is_widest = gap >= maxval(gap)*(1.0_wp - nearly)
+      if (is_widest(0) .or. is_widest(samples)) return
+      farthest = maxloc(abs(end), dim=1, mask=is_widest) - 1
+      if (is_widest(samples - farthest)) return
+      interval = scene%mesh%period/nodes
+      scene%mesh%middle = interval*anint((end(farthest) - sign(0.5_wp*scene%mesh%period, end(farthest)))/interval)
    end subroutine choose_middle
 
    !> Undeformed gaps at arc lengths from the origin of x, lengths.
