@@ -532,17 +532,17 @@ contains
       call place_arms(self)
    end subroutine place_nodes
 
-   !> Choose the period that a mesh of `nodes` intervals covers so that its ends, where what spans them is counted twice, are last to
-   !> touch: where the gap is widest, at an end of an interval. The period about the origin if it is also widest at its ends, or at
-   !> opposite places.
+   !> Choose the period that a mesh of `nodes` intervals covers so that its ends, where what spans them is counted twice, are last
+   !> to touch: where the gap is widest, at an end of an interval. The period about the origin if it is also widest at its ends,
+   !> or at opposite places.
    subroutine choose_middle(scene, nodes)
       type(scene_type), intent(inout) :: scene
       integer, intent(in) :: nodes
       integer, parameter :: samples = 2000
       real(wp), parameter :: nearly = 1.0e-4_wp
-      real(wp) :: gap(0:samples), end(0:samples), interval
+      real(wp) :: gap(0:samples), end(0:samples), interval, place
       logical :: is_widest(0:samples)
-      integer :: i, farthest
+      integer :: i, first, last
 
       scene%mesh%middle = 0.0_wp
       scene%mesh%has_middle = .true.
@@ -551,10 +551,17 @@ contains
       where (.not. scene%touchable(end*(1.0_wp - significant))) gap = huge(1.0_wp)
       is_widest = gap >= maxval(gap)*(1.0_wp - nearly)
       if (is_widest(0) .or. is_widest(samples)) return
-      farthest = maxloc(abs(end), dim=1, mask=is_widest) - 1
-      if (is_widest(samples - farthest)) return
+      first = findloc(is_widest, .true., dim=1) - 1
+      last = findloc(is_widest, .true., dim=1, back=.true.) - 1
+      if (all(is_widest(first:last))) then
+         place = 0.5_wp*(end(first) + end(last))
+      else if (first == samples - last) then
+         return
+      else
+         place = merge(end(first), end(last), abs(end(first)) > abs(end(last)))
+      end if
       interval = scene%mesh%period/nodes
-      scene%mesh%middle = interval*anint((end(farthest) - sign(0.5_wp*scene%mesh%period, end(farthest)))/interval)
+      scene%mesh%middle = interval*anint((place - sign(0.5_wp*scene%mesh%period, place))/interval)
    end subroutine choose_middle
 
    !> Undeformed gaps at arc lengths from the origin of x, lengths.
