@@ -319,8 +319,8 @@ contains
       logical, intent(in) :: upper
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
       type(zone_edges_type) :: edges
-      !> Of an edge so near to where the pressure begins to vanish, intervals.
-      real(wp), parameter :: edge_uncertainty = 0.5_wp
+      !> Of an edge so near to where the pressure begins to vanish; and the width of an edge that a coarse mesh misses; intervals.
+      real(wp), parameter :: edge_uncertainty = 0.5_wp, least_width = 0.25_wp
       type(body_type) :: body
       real(wp) :: width, interval
 
@@ -331,7 +331,9 @@ contains
          call find_zone_edges(model, state, edges)
          width = 0.5_wp*(edges%contact_right - edges%contact_left) - body%flat_half_width
          interval = minval(model%width, mask=in_contact(state%status))
-         if (.not. edges%contact .or. .not. width > 0.0_wp .or. width >= resolved_nodes*interval) return
+         ! The contact of a coarse mesh may end on the flat.
+         if (.not. edges%contact .or. .not. width > -interval .or. width >= resolved_nodes*interval) return
+         width = max(width, least_width*interval)
          call add_unresolved(unresolved, all_quantities(simulation), 'the rounded edges of the '// &
                              merge('upper', 'lower', upper)//' body are in contact over a width of '//to_text(width, 3)//', '// &
                              to_text(width/interval, 2)//' intervals', 'use '// &
