@@ -65,7 +65,7 @@ contains
       real(wp), intent(in), optional :: ends(:), period
 
       if (present(period)) self%period = period
-      call gauss_points(-1.0_wp, 1.0_wp, self%point, self%weight)
+      if (self%period > 0.0_wp) call gauss_points(-1.0_wp, 1.0_wp, self%point, self%weight)
       self%interval = interval
       self%datum = datum
       self%modulus = constants%modulus()

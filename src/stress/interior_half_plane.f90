@@ -208,8 +208,7 @@ contains
       complex(wp) :: distant(4), surface(2)
       integer :: near(2, self%tree%leaves()), number, j, k
 
-      place = x
-      if (self%images%period > 0.0_wp) place = real(sum(self%images%move_into_period([cmplx(x - self%middle, 0.0_wp, wp)])), wp)
+      place = place_of(self, x)
       surface = place
       call self%tree%find_distant(surface, distant, near, number)
       if (self%images%period > 0.0_wp) call self%images%add_distant(surface, distant)
@@ -243,13 +242,24 @@ contains
       integer :: j
 
       traction = 0.0_wp
-      place = x
-      if (self%images%period > 0.0_wp) place = real(sum(self%images%move_into_period([cmplx(x - self%middle, 0.0_wp, wp)])), wp)
+      place = place_of(self, x)
       j = last_not_above(self%from, place)
       if (j == 0) return
       if (place > self%to(j) .or. .not. self%to(j) > self%from(j)) return
       traction = self%first(j) + (self%last(j) - self%first(j))*((place - self%from(j))/(self%to(j) - self%from(j)))
    end function traction
+
+   !> The surface point `x` as the elements are kept: with a period, in the one around their middle; lengths.
+   pure real(wp) function place_of(self, x)
+      class(half_plane_load_type), intent(in) :: self
+      real(wp), intent(in) :: x
+      complex(wp) :: moved(1)
+
+      place_of = x
+      if (.not. self%images%period > 0.0_wp) return
+      moved = self%images%move_into_period([cmplx(x - self%middle, 0.0_wp, wp)])
+      place_of = real(moved(1), wp)
+   end function place_of
 
    !> Add the integrals of p/t and tau/t over an element from `left` to `right`, and p and tau at 0 if it is there: of two elements
    !> that meet there, the larger p.
