@@ -5,24 +5,32 @@ module mfv_elasticity
    use mfv_compliance, only: compliance_type
    use mfv_half_plane, only: new_half_plane
    use mfv_kinds, only: wp
+   use mfv_layered, only: new_layered
+   use mfv_layers, only: layer_type, layers_type, new_layers
    use mfv_material, only: material_type
    use mfv_matrix_compliance, only: matrix_of, new_matrix_compliance
    use mfv_near_field, only: near_field_of, near_field_type
    implicit none
    private
    public :: elasticity_type, as_half_plane, as_disk, as_hole, as_matrix
-   public :: elasticity_own, elasticity_half_plane, elasticity_orthotropic, elasticity_anisotropic, elasticity_names
+   public :: elasticity_own, elasticity_half_plane, elasticity_orthotropic, elasticity_anisotropic, elasticity_names, layer_names
 
    !> A half-plane; a disk or a hole of the radius of the surface; a user's matrix.
    integer, parameter :: as_half_plane = 1, as_disk = 2, as_hole = 3, as_matrix = 4
    !> Choices for a body: that of its shape, or a half-plane, isotropic or not.
    integer, parameter :: elasticity_own = 1, elasticity_half_plane = 2, elasticity_orthotropic = 3, elasticity_anisotropic = 4
    character(*), parameter :: elasticity_names = 'own half_plane orthotropic anisotropic'
+   !> Materials of a layer.
+   character(*), parameter :: layer_names = 'isotropic orthotropic anisotropic'
 
    type :: elasticity_type
       !> One of as_...
       integer :: kind = as_half_plane
+      !> At the surface.
       type(material_type) :: material = material_type()
+      !> Half-plane: layers bonded on its surface, from there down, and what is below them, rigid without a material.
+      type(layer_type), allocatable :: layer(:)
+      type(material_type) :: base = material_type()
       !> Distance from x = 0 to the datum, the surface point where displacements vanish, length.
       real(wp) :: datum = 0.0_wp
       !> Whether this is a default that depends on the loads or on the mesh, not on the shapes.
@@ -36,7 +44,12 @@ module mfv_elasticity
    contains
       procedure :: is_circle
       procedure :: is_matrix
+      procedure :: is_layered
+      procedure :: has_datum
+      procedure :: layers
+      procedure :: coat
       procedure :: near_field
+      procedure :: modulus_over
       procedure :: strain_by_bulk_stress
       procedure :: make_compliance
    end type elasticity_type
@@ -57,6 +70,58 @@ contains
       is_matrix = self%kind == as_matrix
    end function is_matrix
 
+   !> Whether it has layers.
+   pure logical function is_layered(self)
+      class(elasticity_type), intent(in) :: self
+
+      is_layered = allocated(self%layer)
+   end function is_layered
+
+   !> Whether displacements are measured at a datum: not above a rigid base, nor of a matrix.
+   pure logical function has_datum(self)
+      class(elasticity_type), intent(in) :: self
+
+      has_datum = .not. self%is_matrix()
+      if (self%is_layered()) has_datum = self%base%exists()
+   end function has_datum
+
+   !> Its layers, in terms of waves.
+   pure type(layers_type) function layers(self)
+      class(elasticity_type), intent(in) :: self
+
+      layers = new_layers(self%layer, self%base)
+   end function layers
+
+   !> Put layers, from the surface down, on the body as it is, or on a rigid one.
+   pure subroutine coat(self, layer, rigid)
+      class(elasticity_type), intent(inout) :: self
+      type(layer_type), intent(in) :: layer(:)
+      logical, intent(in) :: rigid
+
+      self%kind = as_half_plane
+      self%base = material_type()
+      if (.not. rigid) self%base = self%material
+      self%layer = layer
+      self%material = layer(1)%material
+   end subroutine coat
+
+   !> Modulus under pressures that vary over a length: 1/A of the near field or, with layers, that of a wave of this length over 2
+   !> pi, force/length^2; 0 without a material.
+   pure real(wp) function modulus_over(self, length) result(modulus)
+      class(elasticity_type), intent(in) :: self
+      real(wp), intent(in) :: length
+      type(near_field_type) :: constants
+      type(layers_type) :: layers
+      complex(wp) :: z(2, 2)
+
+      constants = self%near_field()
+      modulus = constants%modulus()
+      if (.not. self%is_layered()) return
+      layers = self%layers()
+      z = layers%compliance(cmplx(1.0_wp/length, 0.0_wp, wp))
+      modulus = 1.0_wp/real(z(2, 2), wp)
+   end function modulus_over
+
    !> Constants of its near field, 0 without a material.
    elemental type(near_field_type) function near_field(self) result(constants)
       class(elasticity_type), intent(in) :: self
@@ -65,11 +130,12 @@ contains
    end function near_field
 
    !> Strain along the surface per uniform stress in its direction, length^2/force: s11 of mfv_material; isotropic: 1/E in plane
-   !> stress, (1 - nu^2)/E in plane strain.
-   elemental real(wp) function strain_by_bulk_stress(self) result(strain)
+   !> stress, (1 - nu^2)/E in plane strain. With layers: of the stress in their base.
+   pure real(wp) function strain_by_bulk_stress(self) result(strain)
       class(elasticity_type), intent(in) :: self
 
       strain = self%material%compliance(1)
+      if (self%is_layered()) strain = self%base%compliance(1)
    end function strain_by_bulk_stress
 
    !> Compliance with `nodes` intervals of the width `interval` (length) of a surface of the radius `radius` (circles).
@@ -94,8 +160,13 @@ contains
       case (as_matrix)
          allocate (compliance, source=new_matrix_compliance(self%matrix, self%width, coupling, tangential))
       case default
-         allocate (compliance, source=new_half_plane(self%near_field(), nodes, interval, self%datum, coupling, tangential, &
-                                                     ends, self%period))
+         if (self%is_layered()) then
+            allocate (compliance, source=new_layered(self%layers(), self%near_field(), nodes, interval, self%datum, coupling, &
+                                                     tangential, self%period, ends))
+         else
+            allocate (compliance, source=new_half_plane(self%near_field(), nodes, interval, self%datum, coupling, tangential, &
+                                                        ends, self%period))
+         end if
       end select
       if (.not. present(ends)) return
       call move_alloc(compliance, graded)

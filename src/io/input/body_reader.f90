@@ -3,11 +3,13 @@ module mfv_body_reader
    use mfv_body, only: body_type, new_body
    use mfv_geometry
    use mfv_circle, only: kernel_fourier
-   use mfv_elasticity, only: as_half_plane, elasticity_anisotropic, elasticity_orthotropic, elasticity_own
+   use mfv_elasticity, only: as_half_plane, elasticity_own
    use mfv_error, only: error_type
    use mfv_key_reader
    use mfv_kinds, only: pi, wp
-   use mfv_material, only: new_anisotropic_material, new_material, new_orthotropic_material, plane_stress, shear_modulus_of
+   use mfv_layers, only: layer_type
+   use mfv_material, only: material_type, new_anisotropic_material, new_material, new_orthotropic_material, plane_stress, &
+                           shear_modulus_of
    use mfv_matrix_file, only: read_matrix_body
    use mfv_profile, only: trace_type
    use mfv_profile_file, only: read_profile
@@ -43,11 +45,15 @@ contains
          call reader%need('body', body, 'shape', error)
          if (allocated(error)) return
       end do
-      if (reader%logical_value('body', 1, 'rigid') .and. reader%logical_value('body', 2, 'rigid')) then
+      call check_layers(reader, error)
+      if (allocated(error)) return
+      if (reader%logical_value('body', 1, 'rigid') .and. reader%logical_value('body', 2, 'rigid') .and. &
+          count_groups(reader, 'layer') == 0) then
          call reader%complain('body', 2, 'rigid', both_rigid, error)
       else if (reader%text_value('body', 2, 'shape') == 'matrix') then
          call reader%complain('body', 2, 'shape', 'a matrix must be the first body, the lower one', error)
-      else if (reader%text_value('body', 1, 'shape') == 'matrix' .and. .not. reader%logical_value('body', 2, 'rigid')) then
+      else if (reader%text_value('body', 1, 'shape') == 'matrix' .and. &
+               .not. (reader%logical_value('body', 2, 'rigid') .and. size(layers_of(reader, 2)) == 0)) then
          call reader%complain('body', 2, 'rigid', 'must be .true. if the lower body is a matrix; put the '// &
                               'compliance of both bodies into the matrix', error)
       end if
@@ -55,6 +61,41 @@ contains
          if (.not. allocated(error)) call check_body_keys(reader, body, error)
       end do
    end subroutine check_bodies
+
+   !> Error for layers without a body, thickness or material, or with keys that have no effect.
+   subroutine check_layers(reader, error)
+      type(reader_type), intent(in) :: reader
+      type(error_type), allocatable, intent(out) :: error
+      type(string_type), allocatable :: keys(:)
+      character(:), allocatable :: allowed
+      integer :: i, number
+
+      keys = reader%catalogue%names('layer')
+      do number = 1, count_groups(reader, 'layer')
+         call reader%need('layer', number, 'body', error)
+         if (.not. allocated(error)) call reader%need('layer', number, 'thickness', error)
+         if (allocated(error)) return
+         allowed = 'body thickness elasticity yield_strength '// &
+                   trim(material_keys(reader%text_value('layer', number, 'elasticity')))
+         do i = 1, size(keys)
+            if (.not. reader%has('layer', number, keys(i)%text) .or. has_word(allowed, keys(i)%text)) cycle
+            call reader%complain('layer', number, keys(i)%text, "has no effect with elasticity='"// &
+                                 reader%text_value('layer', number, 'elasticity')//"'; its keys are "//allowed, error)
+            return
+         end do
+      end do
+   end subroutine check_layers
+
+   !> The numbers of the groups &layer of a body, from the surface down.
+   pure function layers_of(reader, body) result(numbers)
+      type(reader_type), intent(in) :: reader
+      integer, intent(in) :: body
+      integer, allocatable :: numbers(:)
+      integer :: i
+
+      numbers = pack([(i, i=1, count_groups(reader, 'layer'))], &
+                     [(reader%integer_value('layer', i, 'body') == body, i=1, count_groups(reader, 'layer'))])
+   end function layers_of
 
    !> Error for keys that have no effect for the shape of their body.
    subroutine check_body_keys(reader, body, error)
@@ -75,12 +116,17 @@ contains
       allowed = 'shape rigid'
       if (needed_keys(shape) /= '') allowed = allowed//' '//trim(needed_keys(shape))
       if (shape == 'profile') allowed = allowed//' interpolation position_scale height_scale level centred'
+      if (shape == 'matrix' .or. shape == 'flat_punch') then
+         if (size(layers_of(reader, body)) > 0) &
+            call reader%complain('layer', 1, 'body', 'a '//shape//' cannot have layers', error)
+         if (allocated(error)) return
+      end if
       if (shape /= 'matrix' .and. .not. rigid) then
          elasticity = reader%text_value('body', body, 'elasticity')
-         allowed = allowed//' elasticity yield_strength datum '//trim(material_keys(reader%choice('body', body, 'elasticity')))
+         allowed = allowed//' elasticity yield_strength datum '//trim(material_keys(elasticity))
          if (elasticity /= 'own') then
             shape = shape//" with elasticity='"//elasticity//"'"
-         else if (shape == 'disk' .or. shape == 'hole') then
+         else if ((shape == 'disk' .or. shape == 'hole') .and. size(layers_of(reader, body)) == 0) then
             allowed = allowed//' kernel harmonics'
          end if
       end if
@@ -95,13 +141,13 @@ contains
 
    !> The keys of a material for a choice of elasticity, separated by blanks; padded with blanks.
    pure function material_keys(elasticity) result(keys)
-      integer, intent(in) :: elasticity
+      character(*), intent(in) :: elasticity
       character(len=160) :: keys
 
       select case (elasticity)
-      case (elasticity_orthotropic)
+      case ('orthotropic')
          keys = orthotropic_keys//' '//plane_strain_keys//' axis_angle'
-      case (elasticity_anisotropic)
+      case ('anisotropic')
          keys = 'compliances axis_angle'
       case default
          keys = 'shear_modulus youngs_modulus poisson_ratio'
@@ -143,15 +189,11 @@ contains
       call read_shape(reader, number, body, error)
       if (allocated(error)) return
       body%rigid = reader%logical_value('body', number, 'rigid')
-      if (body%rigid .or. body%is_matrix()) return
-      select case (reader%choice('body', number, 'elasticity'))
-      case (elasticity_orthotropic)
-         call read_orthotropic(reader, number, plane, body, error)
-      case (elasticity_anisotropic)
-         call read_anisotropic(reader, number, plane, body, error)
-      case default
-         call read_material(reader, number, plane, body, error)
-      end select
+      if (body%rigid .or. body%is_matrix()) then
+         call read_layers(reader, number, plane, body, error)
+         return
+      end if
+      call read_material('body', reader, number, plane, number == 2, body%elasticity%material, error)
       if (allocated(error)) return
       if (reader%choice('body', number, 'elasticity') /= elasticity_own) body%elasticity%kind = as_half_plane
       body%yield_strength = reader%real_value('body', number, 'yield_strength')
@@ -159,7 +201,52 @@ contains
       body%elasticity%harmonics = reader%integer_value('body', number, 'harmonics')
       if (body%elasticity%harmonics > 0 .and. body%elasticity%kernel /= kernel_fourier) &
          call reader%complain('body', number, 'harmonics', "has no effect without kernel='fourier'; remove it", error)
+      if (.not. allocated(error)) call read_layers(reader, number, plane, body, error)
    end subroutine read_body
+
+   !> Bond the layers of a body on it.
+   subroutine read_layers(reader, number, plane, body, error)
+      type(reader_type), intent(in) :: reader
+      integer, intent(in) :: number, plane
+      type(body_type), intent(inout) :: body
+      type(error_type), allocatable, intent(out) :: error
+      integer, allocatable :: numbers(:)
+      type(layer_type), allocatable :: layer(:)
+      integer :: i
+
+      numbers = layers_of(reader, number)
+      if (size(numbers) == 0) return
+      allocate (layer(size(numbers)))
+      do i = 1, size(numbers)
+         layer(i)%thickness = reader%real_value('layer', numbers(i), 'thickness')
+         layer(i)%yield_strength = reader%real_value('layer', numbers(i), 'yield_strength')
+         call read_material('layer', reader, numbers(i), plane, number == 2, layer(i)%material, error)
+         if (allocated(error)) return
+      end do
+      call body%elasticity%coat(layer, body%rigid)
+      body%rigid = .false.
+   end subroutine read_layers
+
+   !> The elastic material of a body or a layer; `upside_down`: that of the upper body, seen from below, as its mirror image.
+   subroutine read_material(group, reader, number, plane, upside_down, material, error)
+      character(*), intent(in) :: group
+      type(reader_type), intent(in) :: reader
+      integer, intent(in) :: number, plane
+      logical, intent(in) :: upside_down
+      type(material_type), intent(out) :: material
+      type(error_type), allocatable, intent(out) :: error
+
+      select case (reader%text_value(group, number, 'elasticity'))
+      case ('orthotropic')
+         call read_orthotropic(group, reader, number, plane, material, error)
+      case ('anisotropic')
+         call read_anisotropic(group, reader, number, plane, material, error)
+      case default
+         call read_isotropic(group, reader, number, plane, material, error)
+         return
+      end select
+      if (upside_down) material = material%mirrored()
+   end subroutine read_material
 
    subroutine read_shape(reader, number, body, error)
       type(reader_type), intent(in) :: reader
@@ -254,11 +341,12 @@ contains
          call reader%complain('body', number, 'height_scale', 'must not be 0', error)
    end subroutine read_trace
 
-   !> An orthotropic material. That of the upper body is seen from below, as its mirror image.
-   subroutine read_orthotropic(reader, number, plane, body, error)
+   !> An orthotropic material.
+   subroutine read_orthotropic(group, reader, number, plane, material, error)
+      character(*), intent(in) :: group
       type(reader_type), intent(in) :: reader
       integer, intent(in) :: number, plane
-      type(body_type), intent(inout) :: body
+      type(material_type), intent(out) :: material
       type(error_type), allocatable, intent(out) :: error
       type(string_type), allocatable :: keys(:)
       logical :: valid
@@ -267,22 +355,21 @@ contains
       keys = list_of_words(orthotropic_keys)
       if (plane /= plane_stress) keys = list_of_words(orthotropic_keys//' '//plane_strain_keys)
       do i = 1, size(keys)
-         call reader%need('body', number, keys(i)%text, error)
+         call reader%need(group, number, keys(i)%text, error)
          if (allocated(error)) return
       end do
       keys = list_of_words(plane_strain_keys)
       do i = 1, size(keys)
-         if (plane /= plane_stress .or. .not. reader%has('body', number, keys(i)%text)) cycle
-         call reader%complain('body', number, keys(i)%text, "has no effect with plane='stress' in &scene; remove it", error)
+         if (plane /= plane_stress .or. .not. reader%has(group, number, keys(i)%text)) cycle
+         call reader%complain(group, number, keys(i)%text, "has no effect with plane='stress' in &scene; remove it", error)
          return
       end do
       call new_orthotropic_material([value('youngs_modulus_1'), value('youngs_modulus_2'), value('youngs_modulus_3')], &
                                     [value('poisson_ratio_12'), value('poisson_ratio_13'), value('poisson_ratio_23')], &
-                                    value('shear_modulus_12'), plane, degree*value('axis_angle'), body%elasticity%material, valid)
-      if (.not. valid) call reader%complain('body', number, 'elasticity', 'no such material: some stress would release energy; '// &
+                                    value('shear_modulus_12'), plane, degree*value('axis_angle'), material, valid)
+      if (.not. valid) call reader%complain(group, number, 'elasticity', 'no such material: some stress would release energy; '// &
                                             'the squares of poisson_ratio_12, _13 and _23 must be below E1/E2, E1/E3 and '// &
                                             'E2/E3, and smaller if several are large', error)
-      if (number == 2) body%elasticity%material = body%elasticity%material%mirrored()
 
    contains
 
@@ -292,61 +379,62 @@ contains
 
          value = 0.0_wp
          if (plane == plane_stress .and. has_word(plane_strain_keys, name)) return
-         value = reader%real_value('body', number, name)
+         value = reader%real_value(group, number, name)
       end function value
    end subroutine read_orthotropic
 
-   !> A material with any compliances in the plane. That of the upper body is seen from below, as its mirror image.
-   subroutine read_anisotropic(reader, number, plane, body, error)
+   !> A material with any compliances in the plane.
+   subroutine read_anisotropic(group, reader, number, plane, material, error)
+      character(*), intent(in) :: group
       type(reader_type), intent(in) :: reader
       integer, intent(in) :: number, plane
-      type(body_type), intent(inout) :: body
+      type(material_type), intent(out) :: material
       type(error_type), allocatable, intent(out) :: error
       real(wp), allocatable :: compliances(:)
       logical :: valid
 
-      call reader%need('body', number, 'compliances', error)
+      call reader%need(group, number, 'compliances', error)
       if (allocated(error)) return
-      call reader%real_values('body', number, 'compliances', compliances)
+      call reader%real_values(group, number, 'compliances', compliances)
       if (plane == plane_stress .and. size(compliances) /= 6) then
-         call reader%complain('body', number, 'compliances', 'must be six numbers in plane stress: S11, S12, S22, S16, S26, S66', &
+         call reader%complain(group, number, 'compliances', 'must be six numbers in plane stress: S11, S12, S22, S16, S26, S66', &
                               error)
       else if (plane /= plane_stress .and. size(compliances) /= 10) then
-         call reader%complain('body', number, 'compliances', 'must be ten numbers in plane strain: S11, S12, S22, S16, S26, '// &
+         call reader%complain(group, number, 'compliances', 'must be ten numbers in plane strain: S11, S12, S22, S16, S26, '// &
                               'S66, S13, S23, S33, S36', error)
       end if
       if (allocated(error)) return
-      call new_anisotropic_material(compliances, degree*reader%real_value('body', number, 'axis_angle'), &
-                                    body%elasticity%material, valid)
-      if (.not. valid) call reader%complain('body', number, 'compliances', 'no such material: some stress would release '// &
+      call new_anisotropic_material(compliances, degree*reader%real_value(group, number, 'axis_angle'), &
+                                    material, valid)
+      if (.not. valid) call reader%complain(group, number, 'compliances', 'no such material: some stress would release '// &
                                             'energy; the matrix of the compliances must be positive definite', error)
-      if (number == 2) body%elasticity%material = body%elasticity%material%mirrored()
    end subroutine read_anisotropic
 
    !> The elastic material, isotropic.
-   subroutine read_material(reader, number, plane, body, error)
+   subroutine read_isotropic(group, reader, number, plane, material, error)
+      character(*), intent(in) :: group
       type(reader_type), intent(in) :: reader
       integer, intent(in) :: number, plane
-      type(body_type), intent(inout) :: body
+      type(material_type), intent(out) :: material
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: modulus, ratio
 
-      call reader%need('body', number, 'poisson_ratio', error)
+      call reader%need(group, number, 'poisson_ratio', error)
       if (allocated(error)) return
-      ratio = reader%real_value('body', number, 'poisson_ratio')
-      if (reader%has('body', number, 'youngs_modulus')) then
-         if (reader%has('body', number, 'shear_modulus')) then
-            call reader%complain('body', number, 'youngs_modulus', 'shear_modulus is also given; give only one of them', error)
+      ratio = reader%real_value(group, number, 'poisson_ratio')
+      if (reader%has(group, number, 'youngs_modulus')) then
+         if (reader%has(group, number, 'shear_modulus')) then
+            call reader%complain(group, number, 'youngs_modulus', 'shear_modulus is also given; give only one of them', error)
             return
          end if
-         modulus = shear_modulus_of(reader%real_value('body', number, 'youngs_modulus'), ratio)
+         modulus = shear_modulus_of(reader%real_value(group, number, 'youngs_modulus'), ratio)
       else
-         call reader%need('body', number, 'shear_modulus', error)
+         call reader%need(group, number, 'shear_modulus', error)
          if (allocated(error)) return
-         modulus = reader%real_value('body', number, 'shear_modulus')
+         modulus = reader%real_value(group, number, 'shear_modulus')
       end if
-      body%elasticity%material = new_material(modulus, ratio, plane)
-   end subroutine read_material
+      material = new_material(modulus, ratio, plane)
+   end subroutine read_isotropic
 
    !> Error for bodies that do not separate away from the origin.
    subroutine check_pair(reader, scene, error)
@@ -392,9 +480,10 @@ contains
       type(scene_type), intent(inout) :: scene
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: datum(2)
-      logical :: of_case(2)
+      logical :: of_case(2), has_datum(2)
       integer :: number
 
+      has_datum = [scene%lower%elasticity%has_datum(), scene%upper%elasticity%has_datum()]
       call default_datum(scene, scene%lower, scene%upper, datum(1), of_case(1))
       call default_datum(scene, scene%upper, scene%lower, datum(2), of_case(2))
       do number = 1, 2
@@ -407,12 +496,13 @@ contains
             datum(number) = reader%real_value('body', number, 'datum')
             of_case(number) = .false.
          end if
-         if (datum(number) <= scene%mesh%period/(2.0_wp*pi) .and. scene%mesh%period > 0.0_wp) then
+         if (datum(number) <= scene%mesh%period/(2.0_wp*pi) .and. scene%mesh%period > 0.0_wp .and. has_datum(number)) then
             call reader%complain('body', number, 'datum', 'must be above the period over 2 pi, '// &
                                  to_text(scene%mesh%period/(2.0_wp*pi))//', with period in &mesh: a uniform pressure moves the '// &
                                  'surface', error)
             return
          end if
+         if (.not. has_datum(number) .and. .not. datum(number) > 0.0_wp) datum(number) = 1.0_wp
          if (datum(number) > 0.0_wp .or. reader%logical_value('body', number, 'rigid')) cycle
          call reader%complain('body', number, 'datum', 'is needed: the shapes have no length to derive it from, and neither a '// &
                               'normal_force nor half_width in &mesh is given', error)
@@ -420,8 +510,8 @@ contains
       end do
       scene%lower%elasticity%datum = datum(1)
       scene%upper%elasticity%datum = datum(2)
-      scene%lower%elasticity%datum_of_case = of_case(1) .and. .not. scene%lower%rigid
-      scene%upper%elasticity%datum_of_case = of_case(2) .and. .not. scene%upper%rigid
+      scene%lower%elasticity%datum_of_case = of_case(1) .and. has_datum(1) .and. .not. scene%lower%rigid
+      scene%upper%elasticity%datum_of_case = of_case(2) .and. has_datum(2) .and. .not. scene%upper%rigid
    end subroutine read_datums
 
 end module mfv_body_reader

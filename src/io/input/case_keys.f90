@@ -1,7 +1,7 @@
 !> All groups and keys of a case: kinds, defaults, ranges and meanings. The reader checks against this list; docs/namelist.md and
 !> `mfv_run --keys` are made from it.
 module mfv_case_keys
-   use mfv_elasticity, only: elasticity_names
+   use mfv_elasticity, only: elasticity_names, layer_names
    use mfv_geometry, only: shape_names
    use mfv_compliance, only: coupling_names
    use mfv_friction, only: friction_law_names
@@ -15,8 +15,8 @@ module mfv_case_keys
    public :: case_catalogue
 
    !> Groups in the order of the reference, and those that may be repeated.
-   character(*), parameter :: group_list = 'scene body mesh friction wear step history solver output'
-   character(*), parameter :: repeated_groups = 'body step'
+   character(*), parameter :: group_list = 'scene body layer mesh friction wear step history solver output'
+   character(*), parameter :: repeated_groups = 'body layer step'
 
    !> Terms of a Fourier series: 4 for each of the most intervals that a circle can have with it (mfv_mesh_reader).
    real(wp), parameter :: most_nodes = 1.0e8_wp, most_harmonics = 2.0e8_wp, most_rows = 1.0e6_wp
@@ -32,6 +32,7 @@ contains
       allocate (catalogue%keys(most_keys))
       call add_scene_keys(catalogue)
       call add_body_keys(catalogue)
+      call add_layer_keys(catalogue)
       call add_mesh_keys(catalogue)
       call add_friction_keys(catalogue)
       call add_wear_keys(catalogue)
@@ -60,10 +61,7 @@ contains
       call keys%add('body', 'rigid', kind_logical, 'whether the body is rigid; at least one body must be elastic; a '// &
                     'flat_punch must be rigid', &
                     default='.false.')
-      call keys%add('body', 'shear_modulus', kind_real, 'shear modulus G of an elastic body', unit='force/length^2', above=0.0_wp)
-      call keys%add('body', 'youngs_modulus', kind_real, 'E = 2 G (1 + nu), instead of shear_modulus', unit='force/length^2', &
-                    above=0.0_wp)
-      call keys%add('body', 'poisson_ratio', kind_real, "Poisson's ratio, needed for an elastic body", above=-1.0_wp, upper=0.5_wp)
+      call add_isotropic_keys(keys, 'body', 'an elastic body')
       call keys%add('body', 'yield_strength', kind_real, 'elastic body: a warning is given when the largest von Mises stress '// &
                     'exceeds it', unit='force/length^2', above=0.0_wp)
       call keys%add('body', 'datum', kind_real, 'elastic body: distance from the contact at which displacements are measured; '// &
@@ -86,7 +84,7 @@ contains
       call keys%add('body', 'elasticity', kind_choice, 'how the surface deforms: a disk or hole as such by default, or as a '// &
                     'half-plane, as all other shapes do; orthotropic, anisotropic: as a half-plane of such a material', &
                     default='own', choices=elasticity_names)
-      call add_anisotropic_keys(keys)
+      call add_anisotropic_keys(keys, 'body')
       call keys%add('body', 'kernel', kind_choice, 'elastic disk, hole: closed forms, or the Fourier series', default='exact', &
                     choices='exact fourier')
       call keys%add('body', 'harmonics', kind_integer, "kernel='fourier': terms of the series; if omitted: 4 per "// &
@@ -107,29 +105,55 @@ contains
                     default='.false.')
    end subroutine add_body_keys
 
-   subroutine add_anisotropic_keys(keys)
+   !> Keys of a layer: which body, how thick, and its material.
+   subroutine add_layer_keys(keys)
       type(catalogue_type), intent(inout) :: keys
+
+      call keys%add('layer', 'body', kind_integer, 'the body that it is bonded on, 1 or 2, needed; several layers of one body: '// &
+                    'from the surface down', lower=1.0_wp, upper=2.0_wp)
+      call keys%add('layer', 'thickness', kind_real, 'needed', unit='length', above=0.0_wp)
+      call keys%add('layer', 'elasticity', kind_choice, 'the kind of its material', default='isotropic', choices=layer_names)
+      call add_isotropic_keys(keys, 'layer', 'an isotropic layer')
+      call keys%add('layer', 'yield_strength', kind_real, 'a warning is given when the largest von Mises stress in the layer '// &
+                    'exceeds it', unit='force/length^2', above=0.0_wp)
+      call add_anisotropic_keys(keys, 'layer')
+   end subroutine add_layer_keys
+
+   !> Keys of an isotropic material; `of`: whose it is.
+   subroutine add_isotropic_keys(keys, group, of)
+      type(catalogue_type), intent(inout) :: keys
+      character(*), intent(in) :: group, of
+
+      call keys%add(group, 'shear_modulus', kind_real, 'shear modulus G of '//of, unit='force/length^2', above=0.0_wp)
+      call keys%add(group, 'youngs_modulus', kind_real, 'E = 2 G (1 + nu), instead of shear_modulus', unit='force/length^2', &
+                    above=0.0_wp)
+      call keys%add(group, 'poisson_ratio', kind_real, "Poisson's ratio, needed for "//of, above=-1.0_wp, upper=0.5_wp)
+   end subroutine add_isotropic_keys
+
+   subroutine add_anisotropic_keys(keys, group)
+      type(catalogue_type), intent(inout) :: keys
+      character(*), intent(in) :: group
       character(*), parameter :: strain = ', needed in plane strain'
 
-      call keys%add('body', 'youngs_modulus_1', kind_real, 'orthotropic: modulus along the first axis, needed', &
+      call keys%add(group, 'youngs_modulus_1', kind_real, 'orthotropic: modulus along the first axis, needed', &
                     unit='force/length^2', above=0.0_wp)
-      call keys%add('body', 'youngs_modulus_2', kind_real, 'orthotropic: modulus along the second axis, in the plane, needed', &
+      call keys%add(group, 'youngs_modulus_2', kind_real, 'orthotropic: modulus along the second axis, in the plane, needed', &
                     unit='force/length^2', above=0.0_wp)
-      call keys%add('body', 'youngs_modulus_3', kind_real, 'orthotropic: modulus out of the plane'//strain, &
+      call keys%add(group, 'youngs_modulus_3', kind_real, 'orthotropic: modulus out of the plane'//strain, &
                     unit='force/length^2', above=0.0_wp)
-      call keys%add('body', 'poisson_ratio_12', kind_real, 'orthotropic: contraction along axis 2 over extension along axis 1, '// &
+      call keys%add(group, 'poisson_ratio_12', kind_real, 'orthotropic: contraction along axis 2 over extension along axis 1, '// &
                     'under a stress along axis 1, needed')
-      call keys%add('body', 'poisson_ratio_13', kind_real, 'orthotropic: contraction along axis 3 over extension along '// &
+      call keys%add(group, 'poisson_ratio_13', kind_real, 'orthotropic: contraction along axis 3 over extension along '// &
                     'axis 1, under a stress along axis 1'//strain)
-      call keys%add('body', 'poisson_ratio_23', kind_real, 'orthotropic: contraction along axis 3 over extension along '// &
+      call keys%add(group, 'poisson_ratio_23', kind_real, 'orthotropic: contraction along axis 3 over extension along '// &
                     'axis 2, under a stress along axis 2'//strain)
-      call keys%add('body', 'shear_modulus_12', kind_real, 'orthotropic: shear modulus in the plane, needed', &
+      call keys%add(group, 'shear_modulus_12', kind_real, 'orthotropic: shear modulus in the plane, needed', &
                     unit='force/length^2', above=0.0_wp)
-      call keys%add('body', 'compliances', kind_real, 'anisotropic: six or, in plane strain, ten numbers, needed: S11, '// &
+      call keys%add(group, 'compliances', kind_real, 'anisotropic: six or, in plane strain, ten numbers, needed: S11, '// &
                     'S12, S22, S16, S26, S66, S13, S23, S33, S36; strains (11, 22, engineering 12) by stresses', &
                     unit='length^2/force')
       keys%keys(keys%size)%is_list = .true.
-      call keys%add('body', 'axis_angle', kind_real, 'orthotropic, anisotropic: angle from x to the first axis of the '// &
+      call keys%add(group, 'axis_angle', kind_real, 'orthotropic, anisotropic: angle from x to the first axis of the '// &
                     'material, counterclockwise', unit='degrees', default='0', lower=-180.0_wp, upper=180.0_wp)
    end subroutine add_anisotropic_keys
 

@@ -42,7 +42,7 @@ module mfv_keys
    end type catalogue_type
 
    !> Room for keys while they are added.
-   integer, parameter :: most_keys = 100
+   integer, parameter :: most_keys = 128
    character(len=1), parameter :: line_feed = achar(10)
 
 contains

@@ -1,0 +1,206 @@
+!> Bonded layers on a half-plane or a rigid base: what a wave of tractions exp(i k x) on the surface causes, at any depth.
+!>
+!> With y out of the body, the vector (k u, k v, sigma_xy, sigma_yy) of such a wave changes within a layer as exp(k y N), N constant
+!> (Hooke's law and equilibrium; docs/theory.md). It is continuous between layers, so that the surface compliance Z, (k u, k v) =
+!> Z (sigma_xy, sigma_yy), follows from that of the base, step by step upwards:
+!>
+!>     Z' = (E11 Z + E12) (E21 Z + E22)^-1,   E = exp(k h N)
+!>
+!> An error decreases with every step, as all but the decaying waves do. exp is its series, in steps k h |N| <= 1, so that nothing
+!> overflows or cancels in thick layers, and thin ones keep their digits: Z of a thin layer on a rigid base is E12 in the first place.
+!> k may be complex, with a positive real part: Z continued analytically.
+module mfv_layers
+   use mfv_kinds, only: wp
+   use mfv_material, only: material_type
+   use mfv_near_field, only: near_field_of, near_field_type
+   implicit none
+   private
+   public :: layer_type, layers_type, new_layers
+
+   !> One layer.
+   type :: layer_type
+      !> Length.
+      real(wp) :: thickness = 0.0_wp
+      type(material_type) :: material
+      !> Force/length^2; 0: unknown.
+      real(wp) :: yield_strength = 0.0_wp
+   end type layer_type
+
+   !> Terms of the series of exp; depth over the length of a wave at which the waves of the surface have decayed to round-off, twice.
+   integer, parameter :: terms = 18
+   real(wp), parameter :: deep = 20.0_wp
+
+   !> One layer in terms of waves.
+   type :: wave_layer_type
+      real(wp) :: thickness = 0.0_wp
+      !> N^j/j!, shape (4, 4, 0:terms), and the norm of N in terms of the layer's own stiffness.
+      complex(wp) :: power(4, 4, 0:terms) = 0.0_wp
+      real(wp) :: norm = 1.0_wp
+      !> Least decay of its waves, over k and a depth.
+      real(wp) :: decay = 1.0_wp
+      !> Z if it had no lower end.
+      complex(wp) :: endless(2, 2) = 0.0_wp
+   end type wave_layer_type
+
+   type :: layers_type
+      !> From the surface down.
+      type(wave_layer_type), allocatable :: layer(:)
+      !> Z of the base; zero if it is rigid.
+      complex(wp) :: base(2, 2) = 0.0_wp
+      logical :: rigid_base = .false.
+      !> Strains by the stresses sigma_xy and sigma_yy without extension along x, summed over the layers times their thickness,
+      !> length^3/force: displacements (u, v) of the surface by uniform tractions.
+      real(wp) :: uniform(2, 2) = 0.0_wp
+   contains
+      procedure :: compliance
+      procedure :: thickness
+      procedure :: nearest_image
+   end type layers_type
+
+contains
+
+   !> Layers from the surface down on a base; a base without a material is rigid.
+   pure type(layers_type) function new_layers(layer, base) result(self)
+      type(layer_type), intent(in) :: layer(:)
+      type(material_type), intent(in) :: base
+      integer :: i
+
+      allocate (self%layer(size(layer)))
+      do i = 1, size(layer)
+         self%layer(i) = wave_layer_of(layer(i))
+         self%uniform = self%uniform + layer(i)%thickness*real(self%layer(i)%power(1:2, 3:4, 1), wp)
+      end do
+      self%rigid_base = .not. base%exists()
+      if (.not. self%rigid_base) self%base = endless_compliance(base)
+   end function new_layers
+
+   pure type(wave_layer_type) function wave_layer_of(layer) result(self)
+      type(layer_type), intent(in) :: layer
+      complex(wp) :: rate(4, 4)
+      real(wp) :: scale
+      integer :: j
+
+      self%thickness = layer%thickness
+      rate = rates(layer%material)
+      self%power(:, :, 0) = reshape([(merge(1.0_wp, 0.0_wp, modulo(j, 5) == 0), j=0, 15)], [4, 4])
+      do j = 1, terms
+         self%power(:, :, j) = matmul(rate, self%power(:, :, j - 1))/j
+      end do
+      scale = sqrt(layer%material%compliance(1)*layer%material%compliance(3))
+      rate(1:2, 3:4) = rate(1:2, 3:4)/scale
+      rate(3:4, 1:2) = rate(3:4, 1:2)*scale
+      self%norm = maxval(sum(abs(rate), dim=2))
+      self%decay = minval(aimag(layer%material%roots()))
+      self%endless = endless_compliance(layer%material)
+   end function wave_layer_of
+
+   !> N of a material, stresses in force/length^2.
+   pure function rates(material)
+      type(material_type), intent(in) :: material
+      complex(wp) :: rates(4, 4)
+      complex(wp), parameter :: i = (0.0_wp, 1.0_wp)
+      real(wp) :: across
+
+      associate (s11 => material%compliance(1), s12 => material%compliance(2), s22 => material%compliance(3), &
+                 s16 => material%compliance(4), s26 => material%compliance(5), s66 => material%compliance(6))
+         across = s22 - s12**2/s11
+         ! Exactly zero if incompressible.
+         if (material%is_isotropic()) across = (material%kolosov - 1.0_wp)/(material%shear_modulus*(material%kolosov + 1.0_wp))
+         rates = 0.0_wp
+         rates(1, :) = [i*s16/s11, -i, cmplx(s66 - s16**2/s11, 0.0_wp, wp), cmplx(s26 - s12*s16/s11, 0.0_wp, wp)]
+         rates(2, [1, 3, 4]) = [i*s12/s11, cmplx(s26 - s12*s16/s11, 0.0_wp, wp), cmplx(across, 0.0_wp, wp)]
+         rates(3, [1, 3, 4]) = [cmplx(1.0_wp/s11, 0.0_wp, wp), i*s16/s11, i*s12/s11]
+         rates(4, 3) = -i
+      end associate
+   end function rates
+
+   !> Z of a half-plane, from the constants of its near field.
+   pure function endless_compliance(material) result(z)
+      type(material_type), intent(in) :: material
+      complex(wp) :: z(2, 2)
+      type(near_field_type) :: constants
+
+      constants = near_field_of(material)
+      z(1, 1) = constants%tangential
+      z(2, 2) = constants%normal
+      z(1, 2) = -cmplx(constants%mixed, constants%coupling, wp)
+      z(2, 1) = -cmplx(constants%mixed, -constants%coupling, wp)
+   end function endless_compliance
+
+   !> Z at the surface of layer `top`, by default the first; size(layer) + 1: at the base.
+   pure function compliance(self, k, top) result(z)
+      class(layers_type), intent(in) :: self
+      complex(wp), intent(in) :: k
+      integer, intent(in), optional :: top
+      complex(wp) :: z(2, 2)
+      real(wp) :: decayed
+      integer :: i, first, lowest
+
+      first = 1
+      if (present(top)) first = top
+      z = self%base
+      lowest = size(self%layer)
+      decayed = 0.0_wp
+      do i = first, size(self%layer)
+         decayed = decayed + real(k, wp)*self%layer(i)%decay*self%layer(i)%thickness
+         if (decayed < deep) cycle
+         z = self%layer(i)%endless
+         lowest = i - 1
+         exit
+      end do
+      do i = lowest, first, -1
+         call climb(self%layer(i), k*self%layer(i)%thickness, z)
+      end do
+   end function compliance
+
+   !> Z at the upper side of a layer of the thickness `way` over k from that at its lower side.
+   pure subroutine climb(layer, way, z)
+      type(wave_layer_type), intent(in) :: layer
+      complex(wp), intent(in) :: way
+      complex(wp), intent(inout) :: z(2, 2)
+      complex(wp) :: step(4, 4)
+      integer :: i, steps
+
+      steps = max(ceiling(abs(way)*layer%norm), 1)
+      step = exponential(layer, way/steps)
+      do i = 1, steps
+         z = matmul(matmul(step(1:2, 1:2), z) + step(1:2, 3:4), inverse(matmul(step(3:4, 1:2), z) + step(3:4, 3:4)))
+      end do
+   end subroutine climb
+
+   !> exp(N x), |N x| <= 1.
+   pure function exponential(layer, x) result(total)
+      type(wave_layer_type), intent(in) :: layer
+      complex(wp), intent(in) :: x
+      complex(wp) :: total(4, 4)
+      integer :: j
+
+      total = layer%power(:, :, terms)
+      do j = terms - 1, 0, -1
+         total = total*x + layer%power(:, :, j)
+      end do
+   end function exponential
+
+   pure function inverse(a)
+      complex(wp), intent(in) :: a(2, 2)
+      complex(wp) :: inverse(2, 2)
+
+      inverse = reshape([a(2, 2), -a(2, 1), -a(1, 2), a(1, 1)], [2, 2])/(a(1, 1)*a(2, 2) - a(1, 2)*a(2, 1))
+   end function inverse
+
+   !> Total thickness of the layers, length.
+   pure real(wp) function thickness(self)
+      class(layers_type), intent(in) :: self
+
+      thickness = sum(self%layer%thickness)
+   end function thickness
+
+   !> Distance from the surface to the nearest image of a load there, beyond the first layer: what the layers below add is smooth over
+   !> it, length.
+   pure real(wp) function nearest_image(self)
+      class(layers_type), intent(in) :: self
+
+      nearest_image = 2.0_wp*self%layer(1)%decay*self%layer(1)%thickness
+   end function nearest_image
+
+end module mfv_layers
