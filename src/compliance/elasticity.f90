@@ -5,6 +5,7 @@ module mfv_elasticity
    use mfv_compliance, only: compliance_type
    use mfv_half_plane, only: new_half_plane
    use mfv_kinds, only: wp
+   use mfv_layer_stress, only: layer_stress_type, new_layer_stress
    use mfv_layered, only: new_layered
    use mfv_layers, only: layer_type, layers_type, new_layers
    use mfv_material, only: material_type
@@ -31,6 +32,8 @@ module mfv_elasticity
       !> Half-plane: layers bonded on its surface, from there down, and what is below them, rigid without a material.
       type(layer_type), allocatable :: layer(:)
       type(material_type) :: base = material_type()
+      !> Stresses in the layers, at the surface; allocated by find_surface_stress.
+      type(layer_stress_type), allocatable :: layer_stress
       !> Distance from x = 0 to the datum, the surface point where displacements vanish, length.
       real(wp) :: datum = 0.0_wp
       !> Whether this is a default that depends on the loads or on the mesh, not on the shapes.
@@ -48,6 +51,11 @@ module mfv_elasticity
       procedure :: has_datum
       procedure :: layers
       procedure :: coat
+      procedure :: find_surface_stress
+      procedure :: prepare_stress
+      procedure :: material_of
+      procedure :: depth_of
+      procedure :: layer_at
       procedure :: near_field
       procedure :: modulus_over
       procedure :: strain_by_bulk_stress
@@ -104,6 +112,56 @@ contains
       self%layer = layer
       self%material = layer(1)%material
    end subroutine coat
+
+   !> Find the stresses at the surface of layers, for distances up to `reach`, length, unless they are known; none without layers.
+   subroutine find_surface_stress(self, reach)
+      class(elasticity_type), intent(inout) :: self
+      real(wp), intent(in) :: reach
+
+      if (.not. self%is_layered()) return
+      if (allocated(self%layer_stress)) then
+         if (self%layer_stress%reach >= reach) return
+         deallocate (self%layer_stress)
+      end if
+      allocate (self%layer_stress, source=new_layer_stress(self%layers(), self%period, reach))
+   end subroutine find_surface_stress
+
+   !> Make stresses in layers quick down to the depth `deepest`, length.
+   subroutine prepare_stress(self, deepest)
+      class(elasticity_type), intent(inout) :: self
+      real(wp), intent(in) :: deepest
+
+      if (allocated(self%layer_stress)) call self%layer_stress%prepare(deepest)
+   end subroutine prepare_stress
+
+   !> The material of a layer, from the surface down, or of the base.
+   pure type(material_type) function material_of(self, layer) result(material)
+      class(elasticity_type), intent(in) :: self
+      integer, intent(in) :: layer
+
+      material = self%material
+      if (.not. self%is_layered()) return
+      material = self%base
+      if (layer <= size(self%layer)) material = self%layer(layer)%material
+   end function material_of
+
+   !> Depth of the lower side of a layer below the surface, length.
+   pure real(wp) function depth_of(self, layer) result(depth)
+      class(elasticity_type), intent(in) :: self
+      integer, intent(in) :: layer
+
+      depth = sum(self%layer(:layer)%thickness)
+   end function depth_of
+
+   !> Number of the layer at a depth, length, of two that meet there the upper one; size(layer) + 1: the base.
+   pure integer function layer_at(self, depth) result(number)
+      class(elasticity_type), intent(in) :: self
+      real(wp), intent(in) :: depth
+
+      do number = 1, size(self%layer)
+         if (depth <= self%depth_of(number)*(1.0_wp + 4.0_wp*epsilon(1.0_wp))) return
+      end do
+   end function layer_at
 
    !> Modulus under pressures that vary over a length: 1/A of the near field or, with layers, that of a wave of this length over 2
    !> pi, force/length^2; 0 without a material.

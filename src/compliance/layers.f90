@@ -15,7 +15,7 @@ module mfv_layers
    use mfv_near_field, only: near_field_of, near_field_type
    implicit none
    private
-   public :: layer_type, layers_type, new_layers
+   public :: layer_type, layers_type, new_layers, wave_stress, loads
 
    !> One layer.
    type :: layer_type
@@ -29,15 +29,19 @@ module mfv_layers
    !> Terms of the series of exp; depth over the length of a wave at which the waves of the surface have decayed to round-off, twice.
    integer, parameter :: terms = 18
    real(wp), parameter :: deep = 20.0_wp
+   !> Waves on the surface: of pressure and of shear.
+   integer, parameter :: loads = 2
+   complex(wp), parameter :: unity(2, 2) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [2, 2])
 
-   !> One layer in terms of waves.
+   !> One layer in terms of waves, or the base.
    type :: wave_layer_type
       real(wp) :: thickness = 0.0_wp
+      type(material_type) :: material
       !> N^j/j!, shape (4, 4, 0:terms), and the norm of N in terms of the layer's own stiffness.
       complex(wp) :: power(4, 4, 0:terms) = 0.0_wp
       real(wp) :: norm = 1.0_wp
-      !> Least decay of its waves, over k and a depth.
-      real(wp) :: decay = 1.0_wp
+      !> Least decay of its waves, over k and a depth, and the most that they are shifted along x, over their decay.
+      real(wp) :: decay = 1.0_wp, slant = 0.0_wp
       !> Z if it had no lower end.
       complex(wp) :: endless(2, 2) = 0.0_wp
    end type wave_layer_type
@@ -45,16 +49,21 @@ module mfv_layers
    type :: layers_type
       !> From the surface down.
       type(wave_layer_type), allocatable :: layer(:)
-      !> Z of the base; zero if it is rigid.
-      complex(wp) :: base(2, 2) = 0.0_wp
+      !> The base; without a material it is rigid.
+      type(wave_layer_type) :: base
       logical :: rigid_base = .false.
       !> Strains by the stresses sigma_xy and sigma_yy without extension along x, summed over the layers times their thickness,
       !> length^3/force: displacements (u, v) of the surface by uniform tractions.
       real(wp) :: uniform(2, 2) = 0.0_wp
    contains
       procedure :: compliance
+      procedure :: stresses
+      procedure :: endless_stresses
+      procedure :: uniform_stresses
       procedure :: thickness
       procedure :: nearest_image
+      procedure :: slant
+      procedure :: wave_layer
    end type layers_type
 
 contains
@@ -71,7 +80,7 @@ contains
          self%uniform = self%uniform + layer(i)%thickness*real(self%layer(i)%power(1:2, 3:4, 1), wp)
       end do
       self%rigid_base = .not. base%exists()
-      if (.not. self%rigid_base) self%base = endless_compliance(base)
+      if (.not. self%rigid_base) self%base = wave_layer_of(layer_type(0.0_wp, base))
    end function new_layers
 
    pure type(wave_layer_type) function wave_layer_of(layer) result(self)
@@ -81,6 +90,7 @@ contains
       integer :: j
 
       self%thickness = layer%thickness
+      self%material = layer%material
       rate = rates(layer%material)
       self%power(:, :, 0) = reshape([(merge(1.0_wp, 0.0_wp, modulo(j, 5) == 0), j=0, 15)], [4, 4])
       do j = 1, terms
@@ -90,7 +100,10 @@ contains
       rate(1:2, 3:4) = rate(1:2, 3:4)/scale
       rate(3:4, 1:2) = rate(3:4, 1:2)*scale
       self%norm = maxval(sum(abs(rate), dim=2))
-      self%decay = minval(aimag(layer%material%roots()))
+      associate (roots => layer%material%roots())
+         self%decay = minval(aimag(roots))
+         self%slant = maxval(abs(real(roots, wp)))/self%decay
+      end associate
       self%endless = endless_compliance(layer%material)
    end function wave_layer_of
 
@@ -138,7 +151,7 @@ contains
 
       first = 1
       if (present(top)) first = top
-      z = self%base
+      z = self%base%endless
       lowest = size(self%layer)
       decayed = 0.0_wp
       do i = first, size(self%layer)
@@ -153,20 +166,163 @@ contains
       end do
    end function compliance
 
-   !> Z at the upper side of a layer of the thickness `way` over k from that at its lower side.
-   pure subroutine climb(layer, way, z)
+   !> Z at the upper side of a layer of the thickness `way` over k from that at its lower side. `down`: is multiplied by the
+   !> tractions (sigma_xy, sigma_yy) at the lower side by those at the upper one.
+   pure subroutine climb(layer, way, z, down)
       type(wave_layer_type), intent(in) :: layer
       complex(wp), intent(in) :: way
       complex(wp), intent(inout) :: z(2, 2)
-      complex(wp) :: step(4, 4)
+      complex(wp), intent(inout), optional :: down(2, 2)
+      complex(wp) :: step(4, 4), tractions(2, 2)
       integer :: i, steps
 
       steps = max(ceiling(abs(way)*layer%norm), 1)
       step = exponential(layer, way/steps)
       do i = 1, steps
-         z = matmul(matmul(step(1:2, 1:2), z) + step(1:2, 3:4), inverse(matmul(step(3:4, 1:2), z) + step(3:4, 3:4)))
+         tractions = inverse(matmul(step(3:4, 1:2), z) + step(3:4, 3:4))
+         z = matmul(matmul(step(1:2, 1:2), z) + step(1:2, 3:4), tractions)
+         if (present(down)) down = matmul(down, tractions)
       end do
    end subroutine climb
+
+   !> Stresses (sigma_xx, sigma_yy, sigma_xy) by waves of pressure and of shear on the surface (`loads`), shape (3, loads, depths), at
+   !> ascending depths in one layer (size(layer) + 1: the base), lengths. `k`: 1/length.
+   pure function stresses(self, k, number, depths) result(values)
+      class(layers_type), intent(in) :: self
+      complex(wp), intent(in) :: k
+      integer, intent(in) :: number
+      real(wp), intent(in) :: depths(:)
+      complex(wp) :: values(3, loads, size(depths))
+      complex(wp), dimension(2, 2) :: z, above
+      complex(wp) :: compliances(2, 2, size(depths)), down(2, 2, size(depths))
+      real(wp) :: top, to
+      integer :: i
+
+      top = sum(self%layer(:number - 1)%thickness)
+      values = 0.0_wp
+      if (number > size(self%layer)) then
+         if (self%rigid_base) return
+         above = unity
+         z = self%base%endless
+         do i = size(self%layer), 1, -1
+            call climb(self%layer(i), k*self%layer(i)%thickness, z, above)
+         end do
+         do i = 1, size(depths)
+            values(:, :, i) = wave_stress(self%base, self%base%endless, matmul(decayed(self%base, k*(depths(i) - top)), above))
+         end do
+         return
+      end if
+      associate (layer => self%layer(number))
+         z = self%compliance(k, number + 1)
+         to = top + layer%thickness
+         do i = size(depths), 1, -1
+            ! From here down to what is below, and from above to here.
+            call climb(layer, k*(to - depths(i)), z)
+            compliances(:, :, i) = z
+            to = depths(i)
+         end do
+         down(:, :, 1) = unity
+         call climb(layer, k*(depths(1) - top), z, down(:, :, 1))
+         do i = 2, size(depths)
+            down(:, :, i) = unity
+            z = compliances(:, :, i)
+            call climb(layer, k*(depths(i) - depths(i - 1)), z, down(:, :, i))
+            down(:, :, i) = matmul(down(:, :, i), down(:, :, i - 1))
+         end do
+         z = self%compliance(k, number)
+         above = unity
+         do i = number - 1, 1, -1
+            call climb(self%layer(i), k*self%layer(i)%thickness, z, above)
+         end do
+         do i = 1, size(depths)
+            values(:, :, i) = wave_stress(layer, compliances(:, :, i), matmul(down(:, :, i), above))
+         end do
+      end associate
+   end function stresses
+
+   !> The same in an endless first layer.
+   pure function endless_stresses(self, k, depths) result(values)
+      class(layers_type), intent(in) :: self
+      complex(wp), intent(in) :: k
+      real(wp), intent(in) :: depths(:)
+      complex(wp) :: values(3, loads, size(depths))
+      integer :: i
+
+      associate (layer => self%layer(1))
+         do i = 1, size(depths)
+            values(:, :, i) = wave_stress(layer, layer%endless, decayed(layer, k*depths(i)))
+         end do
+      end associate
+   end function endless_stresses
+
+   !> The same by uniform tractions, without extension along x.
+   pure function uniform_stresses(self, number) result(values)
+      class(layers_type), intent(in) :: self
+      integer, intent(in) :: number
+      real(wp) :: values(3, loads)
+      complex(wp), parameter :: none(2, 2) = 0.0_wp
+
+      values = real(wave_stress(self%wave_layer(number), none, unity), wp)
+   end function uniform_stresses
+
+   !> A layer, or the base.
+   pure type(wave_layer_type) function wave_layer(self, number)
+      class(layers_type), intent(in) :: self
+      integer, intent(in) :: number
+
+      if (number > size(self%layer)) then
+         wave_layer = self%base
+      else
+         wave_layer = self%layer(number)
+      end if
+   end function wave_layer
+
+   !> Stresses (sigma_xx, sigma_yy, sigma_xy) by a unit pressure and a unit shear on the surface, shape (3, loads). `tractions`:
+   !> (sigma_xy, sigma_yy) by those on the surface, `z`: the compliance.
+   pure function wave_stress(layer, z, tractions) result(values)
+      type(wave_layer_type), intent(in) :: layer
+      complex(wp), intent(in) :: z(2, 2), tractions(2, 2)
+      complex(wp) :: values(3, loads), strain(2), here(2, loads)
+      complex(wp), parameter :: i = (0.0_wp, 1.0_wp)
+
+      here = reshape([-tractions(:, 2), tractions(:, 1)], [2, loads])
+      strain = i*matmul(z(1, :), here)
+      associate (s => layer%material%compliance)
+         values(1, :) = (strain - s(2)*here(2, :) - s(4)*here(1, :))/s(1)
+      end associate
+      values(2, :) = here(2, :)
+      values(3, :) = here(1, :)
+   end function wave_stress
+
+   !> Tractions at a depth `way` over k in an endless body by those on its surface, exp(-way G), G = N21 Z + N22. With the mean m of its
+   !> eigenvalues and half their difference d, exp(-way m) [cosh(way d) - sinh(way d)/d (G - m)].
+   pure function decayed(layer, way) result(tractions)
+      type(wave_layer_type), intent(in) :: layer
+      complex(wp), intent(in) :: way
+      complex(wp) :: tractions(2, 2), rate(2, 2), mean, apart, square, even, odd
+      real(wp), parameter :: close = 0.1_wp, nothing = 300.0_wp
+      integer :: j
+
+      rate = matmul(layer%power(3:4, 1:2, 1), layer%endless) + layer%power(3:4, 3:4, 1)
+      mean = 0.5_wp*(rate(1, 1) + rate(2, 2))
+      square = way**2*(mean**2 - rate(1, 1)*rate(2, 2) + rate(1, 2)*rate(2, 1))
+      rate = way*(rate - mean*unity)
+      tractions = 0.0_wp
+      if (real(way*layer%decay, wp) > nothing) return
+      if (abs(square) > close) then
+         apart = sqrt(square)
+         tractions = 0.5_wp*((exp(apart - way*mean) + exp(-apart - way*mean))*unity &
+                             - (exp(apart - way*mean) - exp(-apart - way*mean))/apart*rate)
+      else
+         even = 1.0_wp
+         odd = 1.0_wp
+         do j = 8, 1, -1
+            even = 1.0_wp + even*square/((2*j)*(2*j - 1))
+            odd = 1.0_wp + odd*square/((2*j)*(2*j + 1))
+         end do
+         tractions = exp(-way*mean)*(even*unity - odd*rate)
+      end if
+   end function decayed
 
    !> exp(N x), |N x| <= 1.
    pure function exponential(layer, x) result(total)
@@ -202,5 +358,12 @@ contains
 
       nearest_image = 2.0_wp*self%layer(1)%decay*self%layer(1)%thickness
    end function nearest_image
+
+   !> The most that waves in the layers and the base are shifted along x, over their decay.
+   pure real(wp) function slant(self)
+      class(layers_type), intent(in) :: self
+
+      slant = max(self%base%slant, maxval(self%layer%slant))
+   end function slant
 
 end module mfv_layers

@@ -6,15 +6,15 @@
 !>
 !> D the datum, and the odd one has sin kx. On a rigid base there is no datum: the logarithm of the first layer, with D, and F vanish
 !> together far away. The integrand decays as exp(-k d), d the distance of the nearest image of the load. Its limit at k = 0 is
-!> taken with exp(-k d) in closed form. The rest is integrated along a ray into the complex plane, exp(i k x) being decaying there,
-!> by Gauss quadrature in intervals of k in proportion to k: for all x together, whatever x/d. Along a second ray the values at some
-!> x tell the error. Of a surface that repeats F is a sum over its modes.
+!> taken with exp(-k d) in closed form, the rest by the sum of mfv_wave_integral. Along a second ray the values at some x tell the
+!> error. Of a surface that repeats F is a sum over its modes.
 !>
 !> F is kept as Chebyshev series over intervals in proportion to x, halved where they do not converge.
 module mfv_smooth_kernel
    use mfv_kinds, only: pi, wp
    use mfv_layers, only: layers_type
    use mfv_quadrature, only: gauss_points
+   use mfv_wave_integral, only: last_exponent, new_wave_integral
    implicit none
    private
    public :: smooth_kernel_type, new_smooth_kernel, smooth_kernels, normal_kernel, tangential_kernel, mixed_kernel, odd_kernel
@@ -23,10 +23,8 @@ module mfv_smooth_kernel
    !> odd part changed).
    integer, parameter :: normal_kernel = 1, tangential_kernel = 2, mixed_kernel = 3, odd_kernel = 4, smooth_kernels = 4
 
-   !> Terms of a series; points of an interval of k, and of the mean over an interval of x; most halvings.
-   integer, parameter :: terms = 24, points = 20, mean_points = 12, most_halvings = 8
-   !> exp(-k d) at the end of the integrals; their angle in the complex plane; ratio of the ends of an interval of k.
-   real(wp), parameter :: last_exponent = 44.0_wp, ray = pi/8.0_wp, ratio = sqrt(2.0_wp)
+   !> Terms of a series; points of the mean over an interval of x; most halvings.
+   integer, parameter :: terms = 24, mean_points = 12, most_halvings = 8
 
    type :: smooth_kernel_type
       !> Distance of the nearest image of the load, length, and period, 0 without.
@@ -74,7 +72,7 @@ contains
       if (period > 0.0_wp) then
          spectrum = modes_of(layers, datum, period)
       else
-         spectrum = spectrum_of(layers, datum, max(farthest, datum), ray)
+         spectrum = spectrum_of(layers, datum, max(farthest, datum), 1.0_wp)
       end if
       largest = maxval(abs(layers%compliance((0.0_wp, 0.0_wp)))) + maxval(abs(layers%layer(1)%endless))
       allocate (self%ends(1), self%series(terms, smooth_kernels, 0))
@@ -85,7 +83,7 @@ contains
          call add_interval(self, spectrum, self%ends(size(self%ends)), to, largest, most_halvings)
          to = 2.0_wp*to
       end do
-      if (.not. period > 0.0_wp) self%error = difference(self, spectrum_of(layers, datum, max(farthest, datum), 0.6_wp*ray))
+      if (.not. period > 0.0_wp) self%error = difference(self, spectrum_of(layers, datum, max(farthest, datum), 0.6_wp), largest)
    end function new_smooth_kernel
 
    !> Distance up to which F is known, length.
@@ -98,15 +96,16 @@ contains
       if (self%period > 0.0_wp) reach = huge(1.0_wp)
    end function reach
 
-   !> Largest difference of F to another integral, at some x, over the largest value.
-   pure real(wp) function difference(self, spectrum)
+   !> Largest difference of F to another integral, at some x, over the largest value or `scale`.
+   pure real(wp) function difference(self, spectrum, scale)
       type(smooth_kernel_type), intent(in) :: self
       type(spectrum_type), intent(in) :: spectrum
+      real(wp), intent(in) :: scale
       real(wp) :: values(smooth_kernels), largest, x
       integer :: i
 
       difference = 0.0_wp
-      largest = tiny(1.0_wp)
+      largest = scale
       do i = 1, size(self%ends) - 1
          x = 0.3_wp*self%ends(i) + 0.7_wp*self%ends(i + 1)
          values = function_at(spectrum, x)
@@ -116,34 +115,21 @@ contains
       difference = difference/largest
    end function difference
 
-   !> The integral along a ray at `angle` from the real axis, for distances up to `reach`.
-   type(spectrum_type) function spectrum_of(layers, datum, reach, angle) result(self)
+   !> The integral for distances up to `reach`; `part`: see mfv_wave_integral.
+   type(spectrum_type) function spectrum_of(layers, datum, reach, part) result(self)
       type(layers_type), intent(in) :: layers
-      real(wp), intent(in) :: datum, reach, angle
-      real(wp) :: from, to, place(points), weight(points), last
-      complex(wp) :: direction
-      integer :: i, j, intervals
+      real(wp), intent(in) :: datum, reach, part
+      complex(wp), allocatable :: weight(:)
+      integer :: j
 
       self%rigid_base = layers%rigid_base
       self%image = layers%nearest_image()
       self%datum = datum
       self%limit = real(functions_of(layers, (0.0_wp, 0.0_wp)), wp)
-      direction = exp(cmplx(0.0_wp, angle, wp))
-      last = last_exponent/(self%image*cos(angle))
-      to = min(1.0_wp/reach, 1.0e-4_wp/self%image)
-      intervals = 1 + ceiling(log(last/to)/log(ratio))
-      allocate (self%k(points*intervals), self%value(smooth_kernels, points*intervals))
-      from = 0.0_wp
-      do i = 1, intervals
-         call gauss_points(from, to, place, weight)
-         do j = 1, points
-            associate (k => place(j)*direction, m => points*(i - 1) + j)
-               self%k(m) = k
-               self%value(:, m) = (functions_of(layers, k) - self%limit*exp(-k*self%image))*(weight(j)/(pi*place(j)))
-            end associate
-         end do
-         from = to
-         to = ratio*to
+      call new_wave_integral(self%image, reach, layers%slant(), part, self%k, weight)
+      allocate (self%value(smooth_kernels, size(self%k)))
+      do j = 1, size(self%k)
+         self%value(:, j) = (functions_of(layers, self%k(j)) - self%limit*exp(-self%k(j)*self%image))*weight(j)/(pi*self%k(j))
       end do
       if (.not. self%rigid_base) self%at_datum = sums(self, datum)
    end function spectrum_of

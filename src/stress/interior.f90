@@ -5,8 +5,10 @@ module mfv_interior
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan, ieee_quiet_nan, ieee_value
    use mfv_body, only: body_type
    use mfv_interior_circle, only: circle_load_type, longest_element, new_circle_load
+   use mfv_interior_layers, only: layered_load_type, new_layered_load
    use mfv_interior_half_plane, only: half_plane_load_type, new_half_plane_load
    use mfv_kinds, only: wp
+   use mfv_material, only: material_type
    use mfv_surface_tractions, only: find_traction_elements, traction_elements_type, zone_list_type
    use mfv_tolerances, only: certified, significant
    implicit none
@@ -35,9 +37,11 @@ module mfv_interior
       !> A circle or a half-plane with these elements.
       type(circle_load_type) :: circle
       type(half_plane_load_type) :: half_plane
+      !> Layers: what a half-plane of the first one does not have.
+      type(layered_load_type) :: layers
       !> Largest pressure at the nodes, force/length^2; unit of the elements of a half-plane, length.
       real(wp) :: peak = 0.0_wp, length = 1.0_wp
-      !> Bulk stress of a half-plane: a uniform sigma_xx, force/length^2.
+      !> Bulk stress of a half-plane, of layers that of their base: a uniform sigma_xx, force/length^2.
       real(wp) :: bulk = 0.0_wp
       !> Intervals about corners (mfv_corners) where tractions are not resolved, arc lengths, shape (2, corners).
       real(wp), allocatable :: unresolved(:, :)
@@ -48,6 +52,9 @@ module mfv_interior
       procedure :: surface_von_mises
       procedure :: zones
       procedure :: remote_stress
+      procedure :: bulk_of
+      procedure :: prepare
+      procedure :: weight_at
       procedure :: half_width
       procedure :: surface
       procedure :: middle
@@ -116,6 +123,8 @@ contains
                   self%half_plane = new_half_plane_load(material, e%from, e%to, e%first, e%last)
                end if
             end associate
+            if (allocated(body%elasticity%layer_stress)) &
+               self%layers = new_layered_load(body%elasticity%layer_stress, self%length*e%from, self%length*e%to, e%first, e%last)
          end if
       end associate
    end subroutine new_interior
@@ -172,6 +181,10 @@ contains
          end associate
       else
          contains_point = self%side*y <= 0.0_wp
+         if (self%body%elasticity%is_layered()) then
+            if (.not. self%body%elasticity%base%exists()) contains_point = contains_point .and. &
+                               self%body%layer_at(abs(y)) <= size(self%body%elasticity%layer)
+         end if
       end if
    end function contains_point
 
@@ -190,10 +203,12 @@ contains
       class(interior_type), intent(in) :: self
       real(wp), intent(in) :: x, y
       real(wp) :: values(4), turned(3), from_origin(2)
+      integer :: layer
 
       values = ieee_value(1.0_wp, ieee_quiet_nan)
       if (.not. (ieee_is_finite(x) .and. ieee_is_finite(y))) return
       if (.not. self%contains_point(x, y)) return
+      layer = 1
       if (self%body%deforms_as_circle()) then
          from_origin = coordinates_in_radii(self, x, y)
          if (self%body%is_disk() .and. hypot(1.0_wp + from_origin(1), from_origin(2)) < epsilon(1.0_wp)) return
@@ -202,12 +217,76 @@ contains
          values(stress_yy) = turned(1)
          values(stress_xy) = merge(turned(3), -turned(3), self%body%is_disk())
       else
-         values(:3) = self%half_plane%stress(x/self%length, abs(y)/self%length)
-         values(stress_xx) = values(stress_xx) + self%bulk
+         layer = self%body%layer_at(abs(y))
+         values(:3) = stress_below(self, x, abs(y), layer)
       end if
-      values(stress_zz) = self%body%elasticity%material%stress_out_of_plane(values(:3))
+      values(stress_zz) = stress_zz_of(self, layer, values(:3))
       values(stress_xy) = self%side*values(stress_xy)
    end function stress
+
+   !> Stresses (sigma_xx, sigma_yy, sigma_xy) of a half-plane or a layer at a depth below x, lengths, as if it were below its surface.
+   function stress_below(self, x, depth, layer) result(values)
+      type(interior_type), intent(in) :: self
+      real(wp), intent(in) :: x, depth
+      integer, intent(in) :: layer
+      real(wp) :: values(3)
+
+      values = 0.0_wp
+      if (layer == 1) values = self%half_plane%stress(x/self%length, depth/self%length)
+      if (self%body%elasticity%is_layered()) values = values + self%layers%stress(x, depth, layer)
+      values(stress_xx) = values(stress_xx) + self%bulk_of(layer)
+   end function stress_below
+
+   !> sigma_zz in a layer, or in a body without layers, beside its stresses in the plane, force/length^2.
+   pure real(wp) function stress_zz_of(self, layer, in_plane) result(stress)
+      type(interior_type), intent(in) :: self
+      integer, intent(in) :: layer
+      real(wp), intent(in) :: in_plane(3)
+      type(material_type) :: material
+
+      if (self%body%elasticity%is_layered()) then
+         material = self%body%elasticity%material_of(layer)
+         stress = material%stress_out_of_plane(in_plane)
+      else
+         stress = self%body%elasticity%material%stress_out_of_plane(in_plane)
+      end if
+   end function stress_zz_of
+
+   !> Bulk stress of a layer, force/length^2: all extend alike along x.
+   pure real(wp) function bulk_of(self, layer) result(bulk)
+      class(interior_type), intent(in) :: self
+      integer, intent(in) :: layer
+      type(material_type) :: material
+
+      bulk = self%bulk
+      if (.not. self%body%elasticity%is_layered() .or. .not. abs(bulk) > 0.0_wp) return
+      material = self%body%elasticity%material_of(layer)
+      bulk = bulk*self%body%elasticity%strain_by_bulk_stress()/material%compliance(1)
+   end function bulk_of
+
+   !> Make stresses in layers quick down to the depth `deepest`, length.
+   subroutine prepare(self, deepest)
+      class(interior_type), intent(inout) :: self
+      real(wp), intent(in) :: deepest
+
+      if (self%body%elasticity%is_layered()) call self%layers%table%prepare(deepest)
+   end subroutine prepare
+
+   !> What a von Mises stress at a depth, length, counts in the search for the largest one: of layers with different yield strengths
+   !> its ratio to that of the layer, in terms of the largest one.
+   pure real(wp) function weight_at(self, depth) result(weight)
+      class(interior_type), intent(in) :: self
+      real(wp), intent(in) :: depth
+      real(wp) :: largest
+      integer :: i, layer
+
+      weight = 1.0_wp
+      if (.not. (self%body%elasticity%is_layered() .and. self%body%has_strength())) return
+      largest = maxval([(self%body%strength_of(i), i=1, size(self%body%elasticity%layer) + 1)])
+      layer = self%body%layer_at(depth)
+      weight = 0.0_wp
+      if (self%body%strength_of(layer) > 0.0_wp) weight = largest/self%body%strength_of(layer)
+   end function weight_at
 
    !> Stress tangential to the surface, force/length^2, positive in tension, at an arc length from the origin of x.
    pure real(wp) function surface_stress(self, arc)
@@ -217,7 +296,8 @@ contains
       if (self%body%deforms_as_circle()) then
          surface_stress = self%circle%surface_stress(arc/self%body%radius)
       else
-         surface_stress = self%half_plane%surface_stress(arc/self%length) + self%bulk
+         surface_stress = self%half_plane%surface_stress(arc/self%length) + self%bulk_of(1)
+         if (self%body%elasticity%is_layered()) surface_stress = surface_stress + self%layers%surface_stress(arc)
       end if
    end function surface_stress
 
@@ -256,14 +336,15 @@ contains
       end associate
    end function zones
 
-   !> Stresses as of `stress` far from the contact, force/length^2.
-   pure function remote_stress(self) result(values)
+   !> Stresses as of `stress` far from the contact, force/length^2, in a layer.
+   pure function remote_stress(self, layer) result(values)
       class(interior_type), intent(in) :: self
+      integer, intent(in) :: layer
       real(wp) :: values(4)
 
       values = 0.0_wp
-      values(stress_xx) = self%bulk
-      values(stress_zz) = self%body%elasticity%material%stress_out_of_plane(values(:3))
+      values(stress_xx) = self%bulk_of(layer)
+      values(stress_zz) = stress_zz_of(self, layer, values(:3))
    end function remote_stress
 
    !> All stresses of `stress_names` at (x, y), force/length^2, and the direction in radians; NaN outside the body; polar

@@ -37,7 +37,8 @@ contains
       type(search_type) :: search
       integer :: best, start
 
-      largest%value = von_mises_stress(interior%remote_stress())
+      largest%value = von_mises_stress(interior%remote_stress(1))*interior%weight_at(0.0_wp)
+      if (interior%body%elasticity%is_layered()) largest%value = largest_remote(interior)
       if (largest%value > 0.0_wp) largest%x = ieee_value(1.0_wp, ieee_quiet_nan)
       largest%y = largest%x
       length = 2.0_wp*interior%half_width()
@@ -62,7 +63,23 @@ contains
       end do
       call refine_on_surface(interior, interior%knots(), .true., arc, value)
       call keep_larger(interior, largest, arc, 0.0_wp)
+      ! Of the layer in which it is the largest part of the yield strength.
+      if (ieee_is_finite(largest%y)) largest%value = largest%value/interior%weight_at(abs(largest%y))
    end function largest_von_mises
+
+   !> The largest von Mises stress far from the contact, weighted as in the search, of all layers, force/length^2.
+   real(wp) function largest_remote(interior) result(largest)
+      type(interior_type), intent(in) :: interior
+      integer :: i
+
+      associate (elasticity => interior%body%elasticity)
+         largest = von_mises_stress(interior%remote_stress(size(elasticity%layer) + 1)) &
+                   *interior%weight_at(2.0_wp*elasticity%depth_of(size(elasticity%layer)))
+         do i = 1, size(elasticity%layer)
+            largest = max(largest, von_mises_stress(interior%remote_stress(i))*interior%weight_at(elasticity%depth_of(i)))
+         end do
+      end associate
+   end function largest_remote
 
    !> Starting points of the search below a contact of the length `length`, to the depth `reach`: arc lengths and depths `place` and
    !> first steps `step`, shapes (2, points), with the von Mises stresses `found` there. They are the local maxima of a grid; and,
@@ -130,11 +147,11 @@ contains
 
       largest%x = ieee_value(1.0_wp, ieee_quiet_nan)
       largest%y = largest%x
-      largest%value = max(interior%bulk, 0.0_wp)
+      largest%value = max(interior%bulk_of(1), 0.0_wp)
       if (.not. interior%half_width() > 0.0_wp) return
       stretches = interior%body%elasticity%material%pressure_stretches()
       if (.not. (interior%body%deforms_as_circle() .or. interior%is_sheared() .or. stretches .or. &
-                 interior%body%elasticity%period > 0.0_wp)) return
+                 interior%body%elasticity%is_layered() .or. interior%body%elasticity%period > 0.0_wp)) return
       if (interior%elements%singular .or. (interior%elements%sharp .and. stretches)) then
          largest%value = ieee_value(1.0_wp, ieee_quiet_nan)
          return
@@ -204,7 +221,7 @@ contains
          real(wp), intent(in) :: arc
 
          if (von_mises) then
-            stress_at = interior%surface_von_mises(arc)
+            stress_at = interior%surface_von_mises(arc)*interior%weight_at(0.0_wp)
          else
             stress_at = interior%surface_stress(arc)
             if (interior%is_unresolved(arc)) stress_at = -huge(stress_at)
@@ -248,7 +265,7 @@ contains
       point = interior%point_at(arc, depth)
       values = interior%stress(point(1), point(2))
       von_mises_at = -1.0_wp
-      if (ieee_is_finite(values(1))) von_mises_at = von_mises_stress(values)
+      if (ieee_is_finite(values(1))) von_mises_at = von_mises_stress(values)*interior%weight_at(depth)
    end function von_mises_at
 
    subroutine keep_larger(interior, largest, arc, depth)

@@ -149,6 +149,8 @@ module mfv_scene
       procedure :: moves
       procedure :: near_field
       procedure :: modulus
+      procedure :: modulus_over
+      procedure :: is_layered
       procedure :: curvature
       procedure :: beta
       procedure :: has_datum
@@ -314,6 +316,26 @@ contains
       modulus = both%modulus()
    end function modulus
 
+   !> The same under pressures that vary over a length, see mfv_elasticity; of bodies without layers, whatever the length.
+   pure real(wp) function modulus_over(self, length) result(modulus)
+      class(scene_type), intent(in) :: self
+      real(wp), intent(in) :: length
+
+      modulus = self%modulus()
+      if (.not. self%is_layered() .or. .not. modulus > 0.0_wp) return
+      modulus = 0.0_wp
+      if (.not. self%lower%rigid) modulus = modulus + 1.0_wp/self%lower%elasticity%modulus_over(length)
+      if (.not. self%upper%rigid) modulus = modulus + 1.0_wp/self%upper%elasticity%modulus_over(length)
+      modulus = 1.0_wp/modulus
+   end function modulus_over
+
+   !> Whether a body has layers.
+   pure logical function is_layered(self)
+      class(scene_type), intent(in) :: self
+
+      is_layered = self%lower%elasticity%is_layered() .or. self%upper%elasticity%is_layered()
+   end function is_layered
+
    !> Relative curvature K = 1/R1 + 1/R2 of dissertation eq. 6.1, 1/length.
    pure real(wp) function curvature(self)
       class(scene_type), intent(in) :: self
@@ -450,9 +472,11 @@ contains
       logical, intent(in) :: upper
 
       if (upper) then
-         can_have_bulk_stress = has_interior(self%upper) .and. .not. self%upper%deforms_as_circle()
+         can_have_bulk_stress = has_interior(self%upper) .and. self%upper%elasticity%strain_by_bulk_stress() > 0.0_wp .and. &
+                                .not. self%upper%deforms_as_circle()
       else
-         can_have_bulk_stress = has_interior(self%lower) .and. .not. self%lower%deforms_as_circle()
+         can_have_bulk_stress = has_interior(self%lower) .and. self%lower%elasticity%strain_by_bulk_stress() > 0.0_wp .and. &
+                                .not. self%lower%deforms_as_circle()
       end if
    end function can_have_bulk_stress
 

@@ -75,12 +75,19 @@ contains
       type(scene_type), intent(in) :: scene
       type(indenter_type) :: indenter
       real(wp) :: force
+      integer, parameter :: most_iterations = 12
+      integer :: i
 
       half_width = 0.0_wp
       indenter = indenter_of(scene)
       force = maxval(scene%steps%extreme(motion_approach, control_force))
       if (force > 0.0_wp .and. .not. indenter%is_flat() .and. scene%modulus() > 0.0_wp) &
          half_width = indenter%half_width(0.5_wp*force/scene%modulus())
+      if (.not. scene%is_layered() .or. .not. half_width > 0.0_wp) return
+      ! The modulus is that over the half-width.
+      do i = 1, most_iterations
+         half_width = sqrt(half_width*indenter%half_width(0.5_wp*force/scene%modulus_over(half_width)))
+      end do
    end function half_width_of_forces
 
    !> Default distance from the contact at which the displacements of a body are measured, length: the radius of a circle; else the

@@ -1,0 +1,361 @@
+!> Stresses in layers and their base under line loads on the surface: what mfv_interior_half_plane does not know of, smooth functions
+!> of x and the depth. In the first layer that is the difference to an endless one, below it everything.
+!>
+!> A kernel K is (1/pi) Re integral over k > 0 of S(k) exp(i k x) dk, S from mfv_layers: an even function of x, by the part of S that
+!> is real for real k, and an odd one. They are kept as Chebyshev series in x over intervals in proportion to x, and in the depth over
+!> blocks that double downwards; blocks are made when they are asked for (`prepare`). At other depths the integrals are evaluated
+!> anew. Of a surface that repeats K is a sum over its modes and a mean, without extension along x.
+module mfv_layer_stress
+   use mfv_kinds, only: pi, wp
+   use mfv_layers, only: layers_type, loads
+   use mfv_wave_integral, only: last_exponent, new_wave_integral
+   implicit none
+   private
+   public :: layer_stress_type, new_layer_stress, stress_row_type, row_functions
+
+   !> Stresses (sigma_xx, sigma_yy, sigma_xy) by pressure and by shear, the even and the odd part of each.
+   integer, parameter :: row_functions = 6*loads
+   !> Terms of the series in x and in the depth; intervals of x until it doubles.
+   integer, parameter :: terms = 24, terms_down = 20, intervals_per_doubling = 2
+
+   !> The functions at one depth.
+   type :: stress_row_type
+      !> The layer of the depth; the length over which the functions are smooth, and the period, 0 without.
+      integer :: layer = 1
+      real(wp) :: scale = 1.0_wp, period = 0.0_wp
+      !> Ends of the intervals of x, from 0, and the series, shape (terms, row_functions, intervals).
+      real(wp), allocatable :: ends(:), series(:, :, :)
+   contains
+      procedure :: at
+   end type stress_row_type
+
+   !> The functions at all depths between two.
+   type :: block_type
+      integer :: layer = 1
+      real(wp) :: from = 0.0_wp, to = 0.0_wp
+      type(stress_row_type) :: row(terms_down)
+   end type block_type
+
+   type :: layer_stress_type
+      type(layers_type) :: layers
+      real(wp) :: period = 0.0_wp, reach = 0.0_wp
+      !> At the surface, and below it.
+      type(stress_row_type) :: surface
+      type(block_type), allocatable :: block(:)
+   contains
+      procedure :: prepare
+      procedure :: row
+      procedure :: layer_at
+      procedure :: scale_at
+   end type layer_stress_type
+
+contains
+
+   !> Stresses of layers for distances up to `reach`, length. `period`: of a surface that repeats, length; else 0.
+   type(layer_stress_type) function new_layer_stress(layers, period, reach) result(self)
+      type(layers_type), intent(in) :: layers
+      real(wp), intent(in) :: period, reach
+      type(stress_row_type) :: rows(1)
+
+      self%layers = layers
+      self%period = period
+      self%reach = reach
+      allocate (self%block(0))
+      call make_rows(self, 1, [0.0_wp], layers%nearest_image(), reach, rows)
+      self%surface = rows(1)
+   end function new_layer_stress
+
+   !> Number of the layer at a depth, length; of two that meet there the upper one. size(layer) + 1: the base.
+   pure integer function layer_at(self, depth) result(number)
+      class(layer_stress_type), intent(in) :: self
+      real(wp), intent(in) :: depth
+      real(wp) :: bottom
+
+      bottom = 0.0_wp
+      do number = 1, size(self%layers%layer)
+         bottom = bottom + self%layers%layer(number)%thickness
+         if (depth <= bottom*(1.0_wp + 4.0_wp*epsilon(1.0_wp))) return
+      end do
+   end function layer_at
+
+   !> Length over which the functions are smooth at a depth in a layer, length: the distance of the load or, in the first layer, of its
+   !> nearest image.
+   pure real(wp) function scale_at(self, depth, number) result(scale)
+      class(layer_stress_type), intent(in) :: self
+      real(wp), intent(in) :: depth
+      integer, intent(in) :: number
+      type(layers_type) :: layers
+      real(wp) :: top
+
+      layers = self%layers
+      if (number == 1) then
+         scale = layers%nearest_image() - layers%layer(1)%decay*depth
+         return
+      end if
+      top = sum(layers%layer(:number - 1)%thickness)
+      scale = sum(layers%layer(:number - 1)%decay*layers%layer(:number - 1)%thickness)
+      scale = scale + (depth - top)*merge(layers%base%decay, layers%layer(min(number, size(layers%layer)))%decay, &
+                                          number > size(layers%layer))
+   end function scale_at
+
+   !> Make blocks for all depths down to `deepest`, length.
+   subroutine prepare(self, deepest)
+      class(layer_stress_type), intent(inout) :: self
+      real(wp), intent(in) :: deepest
+      integer, parameter :: most_halvings = 6
+      real(wp) :: from, to, bottom, decay
+      integer :: number, n
+
+      from = 0.0_wp
+      n = size(self%block)
+      if (n > 0) from = self%block(n)%to
+      do while (from < deepest)
+         number = self%layer_at(from*(1.0_wp + 16.0_wp*epsilon(1.0_wp)) + tiny(1.0_wp))
+         if (number > size(self%layers%layer)) then
+            if (self%layers%rigid_base) exit
+            bottom = huge(1.0_wp)
+            decay = self%layers%base%decay
+         else
+            bottom = sum(self%layers%layer(:number)%thickness)
+            decay = self%layers%layer(number)%decay
+         end if
+         to = bottom
+         if (number > 1) then
+            to = from + self%scale_at(from, number)/decay
+            if (to > bottom - 0.1_wp*(to - from)) to = bottom
+         end if
+         call add_block(self, number, from, to, most_halvings)
+         from = to
+      end do
+   end subroutine prepare
+
+   !> Append the block between two depths of a layer, halved until the series converge.
+   recursive subroutine add_block(self, number, from, to, halvings)
+      class(layer_stress_type), intent(inout) :: self
+      integer, intent(in) :: number, halvings
+      real(wp), intent(in) :: from, to
+      type(block_type), allocatable :: longer(:)
+      type(block_type) :: block
+      integer :: n
+
+      block%layer = number
+      block%from = from
+      block%to = to
+      call make_rows(self, number, from + 0.5_wp*(to - from)*(1.0_wp - nodes(terms_down)), &
+                     min(self%scale_at(from, number), self%scale_at(to, number)), self%reach, block%row)
+      if (halvings > 0 .and. .not. has_converged(block)) then
+         call add_block(self, number, from, 0.5_wp*(from + to), halvings - 1)
+         call add_block(self, number, 0.5_wp*(from + to), to, halvings - 1)
+         return
+      end if
+      n = size(self%block)
+      allocate (longer(n + 1))
+      longer(:n) = self%block
+      longer(n + 1) = block
+      call move_alloc(longer, self%block)
+   end subroutine add_block
+
+   !> Whether the last terms of the series in the depth are small.
+   pure logical function has_converged(block)
+      type(block_type), intent(in) :: block
+      real(wp), parameter :: tolerance = 5.0e-12_wp
+      real(wp) :: weight(terms_down), largest
+      real(wp), allocatable :: term(:, :, :)
+      integer :: i, j
+
+      has_converged = .true.
+      largest = 0.0_wp
+      do j = 1, terms_down
+         largest = max(largest, maxval(abs(block%row(j)%series)))
+      end do
+      do i = terms_down - 1, terms_down
+         weight = [(cos(pi*(i - 1)*(j - 0.5_wp)/terms_down)*2.0_wp/terms_down, j=1, terms_down)]
+         term = weight(1)*block%row(1)%series
+         do j = 2, terms_down
+            term = term + weight(j)*block%row(j)%series
+         end do
+         has_converged = has_converged .and. maxval(abs(term)) <= tolerance*largest
+      end do
+   end function has_converged
+
+   !> The functions at a depth in a layer, for distances up to `reach`, lengths.
+   pure function row(self, depth, number, reach)
+      class(layer_stress_type), intent(in) :: self
+      real(wp), intent(in) :: depth, reach
+      integer, intent(in) :: number
+      type(stress_row_type) :: row, rows(1)
+      real(wp) :: weight(terms_down), t
+      integer :: i, j
+
+      if (.not. depth > 0.0_wp .and. reach <= self%reach) then
+         row = self%surface
+         return
+      end if
+      do i = 1, size(self%block)
+         associate (block => self%block(i))
+            if (reach > self%reach .or. block%layer /= number .or. depth > block%to*(1.0_wp + 8.0_wp*epsilon(1.0_wp)) &
+                .or. depth < block%from*(1.0_wp - 8.0_wp*epsilon(1.0_wp))) cycle
+            t = -(2.0_wp*depth - block%from - block%to)/(block%to - block%from)
+            weight = lagrange(t)
+            row = block%row(1)
+            row%series = weight(1)*row%series
+            do j = 2, terms_down
+               row%series = row%series + weight(j)*block%row(j)%series
+            end do
+            return
+         end associate
+      end do
+      call make_rows(self, number, [depth], self%scale_at(depth, number), max(reach, self%reach), rows)
+      row = rows(1)
+   end function row
+
+   !> Chebyshev points on (-1, 1), descending.
+   pure function nodes(number)
+      integer, intent(in) :: number
+      real(wp) :: nodes(number)
+      integer :: j
+
+      nodes = [(cos(pi*(j - 0.5_wp)/number), j=1, number)]
+   end function nodes
+
+   !> Weights of the values at the Chebyshev points for that at t (barycentric formula; Trefethen 2013, chapter 5).
+   pure function lagrange(t) result(weight)
+      real(wp), intent(in) :: t
+      real(wp) :: weight(terms_down), away(terms_down)
+      integer :: j
+
+      away = t - nodes(terms_down)
+      j = minloc(abs(away), dim=1)
+      weight = 0.0_wp
+      weight(j) = 1.0_wp
+      if (.not. abs(away(j)) > 0.0_wp) return
+      weight = [((-1)**j*sin(pi*(j - 0.5_wp)/terms_down), j=1, terms_down)]/away
+      weight = weight/sum(weight)
+   end function lagrange
+
+   !> Rows at ascending depths in a layer for distances up to `reach`; `scale`: the length over which all of them are smooth.
+   pure subroutine make_rows(self, number, depths, scale, reach, rows)
+      class(layer_stress_type), intent(in) :: self
+      integer, intent(in) :: number
+      real(wp), intent(in) :: depths(:), scale, reach
+      type(stress_row_type), intent(out) :: rows(:)
+      complex(wp), allocatable :: k(:), weight(:), even(:, :), odd(:, :), waves(:, :)
+      real(wp), allocatable :: ends(:), x(:), values(:, :, :), mean(:)
+      real(wp) :: turn(terms, terms)
+      integer :: i, j, m, count, n
+
+      ends = ends_of(scale, self%layers%slant(), merge(0.5_wp*self%period, reach, self%period > 0.0_wp))
+      if (self%period > 0.0_wp) then
+         n = ceiling(last_exponent/scale*self%period/(2.0_wp*pi))
+         k = [(cmplx(2.0_wp*pi*m/self%period, 0.0_wp, wp), m=1, n)]
+         weight = spread(cmplx(2.0_wp*pi/self%period, 0.0_wp, wp), 1, n)
+      else
+         call new_wave_integral(scale, ends(size(ends)), self%layers%slant(), 1.0_wp, k, weight)
+      end if
+      count = 3*loads*size(depths)
+      allocate (even(size(k), count), odd(size(k), count))
+      do j = 1, size(k)
+         call find_parts(self, number, depths, k(j), even(j, :), odd(j, :))
+      end do
+      even = even*spread(weight/pi, 2, count)
+      odd = odd*spread(weight/pi, 2, count)
+      turn = reshape([((cos(pi*(i - 1)*(j - 0.5_wp)/terms), i=1, terms), j=1, terms)], [terms, terms])
+      n = size(ends) - 1
+      x = [((ends(i) + 0.5_wp*(ends(i + 1) - ends(i))*(1.0_wp + turn(2, j)), j=1, terms), i=1, n)]
+      allocate (waves(size(x), size(k)))
+      do j = 1, size(k)
+         do i = 1, size(x)
+            waves(i, j) = 0.0_wp
+            if (aimag(k(j))*x(i) < last_exponent) waves(i, j) = exp(cmplx(-aimag(k(j))*x(i), real(k(j), wp)*x(i), wp))
+         end do
+      end do
+      mean = [(0.0_wp, i=1, 3*loads)]
+      if (self%period > 0.0_wp .and. number > 1) mean = pack(self%layers%uniform_stresses(number)/self%period, .true.)
+      allocate (values(size(x), 2, count))
+      values(:, 1, :) = matmul(real(waves, wp), real(even, wp)) - matmul(aimag(waves), aimag(even))
+      values(:, 2, :) = -matmul(real(waves, wp), aimag(odd)) - matmul(aimag(waves), real(odd, wp))
+      do m = 1, size(depths)
+         rows(m)%layer = number
+         rows(m)%scale = scale
+         rows(m)%period = self%period
+         rows(m)%ends = ends
+         allocate (rows(m)%series(terms, row_functions, n))
+         do i = 1, n
+            associate (part => values(terms*(i - 1) + 1:terms*i, :, 3*loads*(m - 1) + 1:3*loads*m), &
+                       series => rows(m)%series(:, :, i))
+               series(:, :3*loads) = matmul(turn, part(:, 1, :) + spread(mean, 1, terms))*(2.0_wp/terms)
+               series(:, 3*loads + 1:) = matmul(turn, part(:, 2, :))*(2.0_wp/terms)
+               series(1, :) = 0.5_wp*series(1, :)
+            end associate
+         end do
+      end do
+   end subroutine make_rows
+
+   !> Ends of the intervals of x up to `farthest`, lengths; as short as near the load also where waves are shifted to.
+   pure function ends_of(scale, slant, farthest) result(ends)
+      real(wp), intent(in) :: scale, slant, farthest
+      real(wp), allocatable :: ends(:)
+      real(wp) :: from, step
+
+      ends = [0.0_wp]
+      from = 0.0_wp
+      step = scale/intervals_per_doubling
+      do while (from < farthest)
+         from = from + step
+         ends = [ends, from]
+         step = max(step, (from - 2.0_wp*slant*scale)/intervals_per_doubling)
+      end do
+   end function ends_of
+
+   !> The parts of S that are real and imaginary for real k, continued analytically, by load and depth.
+   pure subroutine find_parts(self, number, depths, k, even, odd)
+      class(layer_stress_type), intent(in) :: self
+      integer, intent(in) :: number
+      real(wp), intent(in) :: depths(:)
+      complex(wp), intent(in) :: k
+      complex(wp), intent(out) :: even(:), odd(:)
+      complex(wp), dimension(3, loads, size(depths)) :: here, there
+
+      here = self%layers%stresses(k, number, depths)
+      there = conjg(self%layers%stresses(conjg(k), number, depths))
+      if (number == 1) then
+         here = here - self%layers%endless_stresses(k, depths)
+         there = there - conjg(self%layers%endless_stresses(conjg(k), depths))
+      end if
+      even = pack(0.5_wp*(here + there), .true.)
+      odd = pack((here - there)*(0.0_wp, -0.5_wp), .true.)
+   end subroutine find_parts
+
+   !> Stresses (sigma_xx, sigma_yy, sigma_xy) by unit line loads into the surface and to the right on the body, shape (3, loads), at the
+   !> signed distance x to the right of them, length; 1/length.
+   pure function at(self, x) result(values)
+      class(stress_row_type), intent(in) :: self
+      real(wp), intent(in) :: x
+      real(wp) :: values(3, loads), place, t, b(row_functions), last(row_functions), next(row_functions)
+      integer :: first, beyond, middle, j
+
+      place = x
+      if (self%period > 0.0_wp) place = x - self%period*anint(x/self%period)
+      first = 1
+      beyond = size(self%ends)
+      do while (beyond - first > 1)
+         middle = (first + beyond)/2
+         if (abs(place) < self%ends(middle)) then
+            beyond = middle
+         else
+            first = middle
+         end if
+      end do
+      t = (2.0_wp*abs(place) - self%ends(first) - self%ends(beyond))/(self%ends(beyond) - self%ends(first))
+      b = 0.0_wp
+      last = 0.0_wp
+      do j = terms, 2, -1
+         next = 2.0_wp*t*b - last + self%series(j, :, first)
+         last = b
+         b = next
+      end do
+      b = t*b - last + self%series(1, :, first)
+      values = reshape(b(:3*loads) + sign(1.0_wp, place)*b(3*loads + 1:), [3, loads])
+   end function at
+
+end module mfv_layer_stress
