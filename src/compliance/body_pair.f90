@@ -61,6 +61,7 @@ contains
             self%block_values = self%block_values + body%block_values
             flexibility = flexibility + 1.0_wp/body%modulus
             by_shear = by_shear + body%shear_ratio/body%modulus
+            self%kernel_error = max(self%kernel_error, body%kernel_error)
             self%is_homogeneous = self%is_homogeneous .and. body%is_homogeneous
             self%is_logarithmic = self%is_logarithmic .and. body%is_logarithmic
          end associate

@@ -38,6 +38,8 @@ module mfv_compliance
       logical :: is_logarithmic = .false.
       !> C_ut over C_wp next to a load.
       real(wp) :: shear_ratio = 1.0_wp
+      !> Estimated error of numerical kernels, over their largest value.
+      real(wp) :: kernel_error = 0.0_wp
       !> Reals stored for the blocks that exist.
       integer :: block_values = 0
    contains

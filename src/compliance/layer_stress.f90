@@ -39,8 +39,9 @@ module mfv_layer_stress
    type :: layer_stress_type
       type(layers_type) :: layers
       real(wp) :: period = 0.0_wp, reach = 0.0_wp
-      !> At the surface, and below it.
+      !> At the surface, at the upper sides of the interfaces, and at all depths.
       type(stress_row_type) :: surface
+      type(stress_row_type), allocatable :: interface(:)
       type(block_type), allocatable :: block(:)
    contains
       procedure :: prepare
@@ -56,6 +57,8 @@ contains
       type(layers_type), intent(in) :: layers
       real(wp), intent(in) :: period, reach
       type(stress_row_type) :: rows(1)
+      real(wp) :: depth
+      integer :: i
 
       self%layers = layers
       self%period = period
@@ -63,6 +66,13 @@ contains
       allocate (self%block(0))
       call make_rows(self, 1, [0.0_wp], layers%nearest_image(), reach, rows)
       self%surface = rows(1)
+      allocate (self%interface(size(layers%layer)))
+      depth = 0.0_wp
+      do i = 1, size(layers%layer)
+         depth = depth + layers%layer(i)%thickness
+         call make_rows(self, i, [depth], self%scale_at(depth, i), reach, rows)
+         self%interface(i) = rows(1)
+      end do
    end function new_layer_stress
 
    !> Number of the layer at a depth, length; of two that meet there the upper one. size(layer) + 1: the base.

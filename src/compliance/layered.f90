@@ -30,7 +30,6 @@ module mfv_layered
       procedure :: entries
       procedure :: products
       procedure :: signature
-      procedure :: kernel_error
    end type layered_type
 
 contains
@@ -58,6 +57,7 @@ contains
       self%nodes = nodes
       if (present(ends)) then
          self%smooth = new_smooth_kernel(layers, datum, period, ends(size(ends)) - ends(1))
+         self%kernel_error = self%smooth%error
          call self%grade(ends, odd=[.false., .false., .false., .true.])
       else
          call self%resize(nodes)
@@ -75,6 +75,7 @@ contains
       self%nodes = nodes
       if (self%smooth%reach() < nodes*self%interval) &
          self%smooth = new_smooth_kernel(self%layers, self%datum, self%period, room*nodes*self%interval)
+      self%kernel_error = self%smooth%error
       if (allocated(self%kernel)) deallocate (self%kernel)
       allocate (self%kernel(0:nodes - 1, smooth_kernels))
       do i = 0, nodes - 1
@@ -167,12 +168,5 @@ contains
       if (.not. self%has_block(block_wt)) by_block(:, block_wt) = 0.0_wp
       if (.not. self%has_block(block_up)) by_block(:, block_up) = 0.0_wp
    end subroutine products
-
-   !> Estimated error of what the layers add, over its largest value.
-   pure real(wp) function kernel_error(self)
-      class(layered_type), intent(in) :: self
-
-      kernel_error = self%smooth%error
-   end function kernel_error
 
 end module mfv_layered

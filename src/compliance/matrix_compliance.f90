@@ -65,6 +65,7 @@ contains
       self%nodes = n
       self%interval = body%interval
       self%modulus = body%modulus
+      self%kernel_error = body%kernel_error
       self%has_block = body%has_block
       self%elastic_block = body%elastic_block
       self%constants = body%signature()

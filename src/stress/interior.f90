@@ -54,6 +54,7 @@ module mfv_interior
       procedure :: remote_stress
       procedure :: bulk_of
       procedure :: prepare
+      procedure :: interface_tractions
       procedure :: weight_at
       procedure :: half_width
       procedure :: surface
@@ -263,6 +264,19 @@ contains
       material = self%body%elasticity%material_of(layer)
       bulk = bulk*self%body%elasticity%strain_by_bulk_stress()/material%compliance(1)
    end function bulk_of
+
+   !> Tractions at the interface below a layer and below the arc length `arc`, force/length^2: sigma_yy, a tension positive, and
+   !> sigma_xy.
+   function interface_tractions(self, arc, layer) result(tractions)
+      class(interior_type), intent(in) :: self
+      real(wp), intent(in) :: arc
+      integer, intent(in) :: layer
+      real(wp) :: tractions(2), values(3)
+
+      values = self%layers%interface_stress(arc, layer)
+      if (layer == 1) values = values + self%half_plane%stress(arc/self%length, self%body%elasticity%depth_of(1)/self%length)
+      tractions = [values(stress_yy), self%side*values(stress_xy)]
+   end function interface_tractions
 
    !> Make stresses in layers quick down to the depth `deepest`, length.
    subroutine prepare(self, deepest)

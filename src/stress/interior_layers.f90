@@ -26,6 +26,7 @@ module mfv_interior_layers
    contains
       procedure :: stress
       procedure :: surface_stress
+      procedure :: interface_stress
       procedure, private :: sum_over
    end type layered_load_type
 
@@ -180,6 +181,17 @@ contains
       end if
       surface_stress = stress(1)
    end function surface_stress
+
+   !> The same stresses as of `stress` at the upper side of the interface below a layer.
+   pure function interface_stress(self, x, layer) result(stress)
+      class(layered_load_type), intent(in) :: self
+      real(wp), intent(in) :: x
+      integer, intent(in) :: layer
+      real(wp) :: stress(3)
+
+      stress = 0.0_wp
+      if (size(self%level) > 0) stress = self%sum_over(self%table%interface(layer), x)
+   end function interface_stress
 
    !> The sum over all panels.
    pure function sum_over(self, row, x) result(stress)

@@ -5,10 +5,13 @@ module mfv_stress_search
    use mfv_kinds, only: pi, wp
    use mfv_minimum, only: minimum_near, objective_type
    use mfv_surface_tractions, only: merged
-   use mfv_tolerances, only: certified
+   use mfv_tolerances, only: certified, visible
    implicit none
    private
-   public :: largest_type, largest_von_mises, largest_tension
+   public :: largest_type, largest_von_mises, largest_tension, find_largest_at_interfaces, estimate_in_layers
+
+   !> What is searched for along a line.
+   integer, parameter :: surface_tension = 1, surface_von_mises = 2, interface_tension = 3, interface_shear = 4
 
    !> A largest stress, force/length^2, and where it is: x and y, length.
    type :: largest_type
@@ -61,7 +64,7 @@ contains
          call minimum_near(search, step(:, best), place(:, best), value)
          call keep_larger(interior, largest, place(1, best), min(max(place(2, best), 0.0_wp), search%deepest))
       end do
-      call refine_on_surface(interior, interior%knots(), .true., arc, value)
+      call refine_on_line(interior, interior%knots(), surface_von_mises, arc, value)
       call keep_larger(interior, largest, arc, 0.0_wp)
       ! Of the layer in which it is the largest part of the yield strength.
       if (ieee_is_finite(largest%y)) largest%value = largest%value/interior%weight_at(abs(largest%y))
@@ -156,11 +159,84 @@ contains
          largest%value = ieee_value(1.0_wp, ieee_quiet_nan)
          return
       end if
-      call refine_on_surface(interior, candidates(interior), .false., place, value)
+      call refine_on_line(interior, candidates(interior), surface_tension, place, value)
       if (.not. value > largest%value + certified*interior%peak) return
       point = interior%point_at(place, 0.0_wp)
       largest = largest_type(value, point(1), point(2))
    end function largest_tension
+
+   !> The largest normal traction that opens an interface of the layers, and the largest size of the shear there, force/length^2.
+   subroutine find_largest_at_interfaces(interior, tension, shear)
+      type(interior_type), intent(in) :: interior
+      type(largest_type), intent(out) :: tension, shear
+      real(wp), allocatable :: places(:)
+      integer :: layer
+
+      if (.not. interior%half_width() > 0.0_wp) return
+      do layer = 1, size(interior%body%elasticity%layer)
+         places = places_at_depth(interior, interior%body%elasticity%depth_of(layer))
+         call keep(interface_tension, tension)
+         call keep(interface_shear, shear)
+      end do
+
+   contains
+
+      subroutine keep(kind, largest)
+         integer, intent(in) :: kind
+         type(largest_type), intent(inout) :: largest
+         real(wp) :: place, point(2), value
+
+         call refine_on_line(interior, places, kind, place, value, layer)
+         if (.not. value > largest%value) return
+         point = interior%point_at(place, interior%body%elasticity%depth_of(layer))
+         largest = largest_type(value, point(1), point(2))
+      end subroutine keep
+   end subroutine find_largest_at_interfaces
+
+   !> Estimates of the largest tension along the surface of a body with layers, and of the largest von Mises stress in it, as in the
+   !> search for it, -1 without a yield strength; force/length^2.
+   subroutine estimate_in_layers(interior, tension, von_mises)
+      type(interior_type), intent(in) :: interior
+      real(wp), intent(out) :: tension, von_mises
+      integer, parameter :: across = 24
+      !> Depths over the half-width, up to that of the largest stress under an ellipse of pressure.
+      real(wp), parameter :: depths(6) = [0.1_wp, 0.2_wp, 0.3_wp, 0.4_wp, 0.55_wp, 0.7_wp]
+      real(wp), allocatable :: places(:), below(:)
+      integer :: i, j
+
+      tension = max(interior%bulk_of(1), 0.0_wp)
+      von_mises = -1.0_wp
+      if (interior%body%has_strength()) von_mises = 0.0_wp
+      if (.not. interior%half_width() > 0.0_wp) return
+      places = interior%zone_edges(most_between=across)
+      tension = max(tension, maxval([(interior%surface_stress(places(i)), i=1, size(places))]))
+      if (.not. interior%body%has_strength()) return
+      associate (elasticity => interior%body%elasticity)
+         below = [0.0_wp, interior%half_width()*depths, (elasticity%depth_of(i), i=1, size(elasticity%layer))]
+      end associate
+      do j = 1, size(below)
+         von_mises = max(von_mises, maxval([(von_mises_at(interior, places(i), below(j)), i=1, size(places))]))
+      end do
+   end subroutine estimate_in_layers
+
+   !> Points at a depth, ascending: below the edges of zones, between them, and at distances from them in proportion to the depth.
+   function places_at_depth(interior, depth) result(places)
+      type(interior_type), intent(in) :: interior
+      real(wp), intent(in) :: depth
+      real(wp), allocatable :: places(:), edges(:), contact(:, :)
+      real(wp), parameter :: steps(15) = [-32.0_wp, -16.0_wp, -8.0_wp, -4.0_wp, -2.0_wp, -1.0_wp, -0.5_wp, 0.0_wp, &
+                                          0.5_wp, 1.0_wp, 2.0_wp, 4.0_wp, 8.0_wp, 16.0_wp, 32.0_wp]
+      integer :: i
+
+      edges = interior%zone_edges(most_between=24)
+      contact = interior%zones()
+      places = edges
+      do i = 1, size(steps)
+         places = merged(places, contact(1, :) + steps(i)*depth)
+         places = merged(places, contact(2, :) + steps(i)*depth)
+      end do
+      places = pack(places, [.true., places(2:) - places(:size(places) - 1) > visible*depth])
+   end function places_at_depth
 
    !> Candidate points for the largest tension, ascending: zone edges, some points between them, kinks of the shear, and points
    !> beside the contact at increasing distances.
@@ -190,13 +266,14 @@ contains
       end associate
    end function candidates
 
-   !> Largest stress along the surface: the best local maxima of ascending points, refined between their neighbours by
-   !> golden-section search.
-   subroutine refine_on_surface(interior, places, von_mises, place, value)
+   !> Largest stress along the surface or an interface: the best local maxima of ascending points, refined between their neighbours by
+   !> golden-section search. `kind`: surface_tension and so on; `layer`: above the interface.
+   subroutine refine_on_line(interior, places, kind, place, value, layer)
       type(interior_type), intent(in) :: interior
       real(wp), intent(in) :: places(:)
-      logical, intent(in) :: von_mises
+      integer, intent(in) :: kind
       real(wp), intent(out) :: place, value
+      integer, intent(in), optional :: layer
       integer, parameter :: starts = 6
       real(wp) :: values(size(places))
       logical :: is_start(size(places))
@@ -219,13 +296,18 @@ contains
 
       real(wp) function stress_at(arc)
          real(wp), intent(in) :: arc
+         real(wp) :: tractions(2)
 
-         if (von_mises) then
+         select case (kind)
+         case (surface_von_mises)
             stress_at = interior%surface_von_mises(arc)*interior%weight_at(0.0_wp)
-         else
+         case (surface_tension)
             stress_at = interior%surface_stress(arc)
             if (interior%is_unresolved(arc)) stress_at = -huge(stress_at)
-         end if
+         case default
+            tractions = interior%interface_tractions(arc, layer)
+            stress_at = merge(tractions(1), abs(tractions(2)), kind == interface_tension)
+         end select
       end function stress_at
 
       !> Take the largest stress between two points if it is larger.
@@ -254,7 +336,7 @@ contains
          value = maxval(found)
          place = inner(maxloc(found, dim=1))
       end subroutine refine_between
-   end subroutine refine_on_surface
+   end subroutine refine_on_line
 
    !> Von Mises stress at a depth below the arc length `arc`, -1 outside the body.
    real(wp) function von_mises_at(interior, arc, depth)

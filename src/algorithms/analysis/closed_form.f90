@@ -46,7 +46,7 @@ contains
       form%shear_source = ''
       associate (model => simulation%contact%model, scene => simulation%contact%model%scene, &
                  force => simulation%contact%state%fields%force(motion_approach))
-         if (.not. (force > 0.0_wp .and. scene%modulus() > 0.0_wp)) return
+         if (.not. (force > 0.0_wp .and. scene%modulus() > 0.0_wp) .or. scene%is_layered()) return
          if (model%compliance%elastic_block(block_wt) .and. model%tangential .and. .not. alike(scene)) return
          if (any(simulation%load_summary%controlled(motion_rotation + 1:))) return
          if (any(abs(model%worn) > 0.0_wp)) return

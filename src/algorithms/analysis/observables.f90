@@ -28,7 +28,7 @@ module mfv_observables
    !> Name, as in tables and files; unit in terms of length and force (energies per unit thickness), or 1; behaviour of the
    !> discretisation error; meaning.
    type :: row_type
-      character(len=27) :: name
+      character(len=36) :: name
       character(len=14) :: unit
       integer :: error
       character(len=130) :: meaning
@@ -38,7 +38,7 @@ module mfv_observables
    character(*), parameter :: over = ' over the last cycle; without cycles: over all rows or steps'
    character(*), parameter :: row_meaning = 'when it occurs: row of &history, turning point of the cycle, or step'
    !> Number and list of the observables.
-   integer, parameter :: observable_count = 73
+   integer, parameter :: observable_count = 89
    type(row_type), parameter :: observables(observable_count) = [ &
                                 row_type('normal_force', 'force/length', error_load, &
                                          'normal force P per unit thickness at the end'), &
@@ -154,7 +154,27 @@ module mfv_observables
                                          'with yield_strength: largest von Mises '//'stress in the upper body'//over), &
                                 row_type('largest_upper_von_mises_x', 'length', error_place, 'where it is: x'), &
                                 row_type('largest_upper_von_mises_y', 'length', error_place, 'where it is: y'), &
-                                row_type('largest_upper_von_mises_row', '1', error_none, row_meaning)]
+                                row_type('largest_upper_von_mises_row', '1', error_none, row_meaning), &
+                                row_type('largest_lower_interface_tension', 'force/length^2', error_smooth, &
+                                         'with layers: largest normal traction that opens an interface of the lower body'//over), &
+                                row_type('largest_lower_interface_tension_x', 'length', error_place, 'where it is: x'), &
+                                row_type('largest_lower_interface_tension_y', 'length', error_none, 'where it is: y'), &
+                                row_type('largest_lower_interface_tension_row', '1', error_none, row_meaning), &
+                                row_type('largest_lower_interface_shear', 'force/length^2', error_smooth, &
+                                         'with layers: largest shear traction at an interface of the lower body'//over), &
+                                row_type('largest_lower_interface_shear_x', 'length', error_place, 'where it is: x'), &
+                                row_type('largest_lower_interface_shear_y', 'length', error_none, 'where it is: y'), &
+                                row_type('largest_lower_interface_shear_row', '1', error_none, row_meaning), &
+                                row_type('largest_upper_interface_tension', 'force/length^2', error_smooth, &
+                                         'with layers: largest normal traction that opens an interface of the upper body'//over), &
+                                row_type('largest_upper_interface_tension_x', 'length', error_place, 'where it is: x'), &
+                                row_type('largest_upper_interface_tension_y', 'length', error_none, 'where it is: y'), &
+                                row_type('largest_upper_interface_tension_row', '1', error_none, row_meaning), &
+                                row_type('largest_upper_interface_shear', 'force/length^2', error_smooth, &
+                                         'with layers: largest shear traction at an interface of the upper body'//over), &
+                                row_type('largest_upper_interface_shear_x', 'length', error_place, 'where it is: x'), &
+                                row_type('largest_upper_interface_shear_y', 'length', error_none, 'where it is: y'), &
+                                row_type('largest_upper_interface_shear_row', '1', error_none, row_meaning)]
 
 contains
 
@@ -276,6 +296,8 @@ contains
       do i = 1, size(body)
          call put_extreme('largest_'//body(i)//'_tension', extremes%searched(candidate_tension(i)))
          call put_extreme('largest_'//body(i)//'_von_mises', extremes%searched(candidate_von_mises(i)))
+         call put_extreme('largest_'//body(i)//'_interface_tension', extremes%interface_tension(i))
+         call put_extreme('largest_'//body(i)//'_interface_shear', extremes%interface_shear(i))
       end do
 
    contains

@@ -15,6 +15,7 @@ module mfv_validity
    use mfv_strings, only: add_text, string_type, to_text
    use mfv_surface_warnings, only: warn_of_surface
    use mfv_zone_edges, only: zone_type
+   use mfv_tolerances, only: certified
    implicit none
    private
    public :: validity_warnings
@@ -66,6 +67,10 @@ contains
          call add_text(warnings, 'the largest relative residual is '//to_text(largest, 2)// &
                        ', well above rounding errors: results may be inaccurate; /certificate in the result file lists the '// &
                        'residuals by name')
+      largest = simulation%contact%model%compliance%kernel_error
+      if (largest > certified) &
+         call add_text(warnings, 'the kernels of the layers have an estimated error of '//to_text(largest, 2)//' of their '// &
+                       'largest value: all results may have errors of that size')
    end subroutine validity_warnings
 
    subroutine check_angle(simulation, name, body, warnings)
@@ -98,12 +103,21 @@ contains
       character(*), parameter :: consequence = ': the theory of small strains and displacements does not hold; tractions, '// &
                                  'contact_length, approach, shift, stiffnesses, dissipation and stresses are off '// &
                                  'by at least that much; check the units of radius, moduli and forces'
-      real(wp) :: strain, approach
+      real(wp) :: strain, approach, modulus, thickness
 
       associate (state => simulation%contact%state, model => simulation%contact%model)
          if (state%contact_nodes() == 0 .or. .not. scene%modulus() > 0.0_wp) return
-         strain = sum(state%fields%pressure*model%width)/sum(model%width, mask=in_contact(state%status))/(2.0_wp*scene%modulus())
+         ! Layers may be softer than what is below them, or stiffer.
+         modulus = min(scene%modulus(), scene%modulus_over(sum(model%width, mask=in_contact(state%status))))
+         strain = sum(state%fields%pressure*model%width)/sum(model%width, mask=in_contact(state%status))/(2.0_wp*modulus)
          approach = 0.0_wp
+         thickness = scene%compressed_thickness()
+         if (thickness > 0.0_wp) approach = state%fields%motion(motion_approach)/thickness
+         if (approach > largest_approach) then
+            call add_text(warnings, 'the approach is '//to_text(100.0_wp*approach, 2)//' % of the thickness of the layers'// &
+                          consequence)
+            return
+         end if
          if (scene%lower%circular()) approach = state%fields%motion(motion_approach)/scene%lower%radius
          if (scene%upper%circular()) approach = max(approach, state%fields%motion(motion_approach)/scene%upper%radius)
       end associate

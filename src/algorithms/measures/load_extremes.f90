@@ -11,11 +11,13 @@ module mfv_load_extremes
    use mfv_body, only: body_type
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
-   use mfv_interior, only: has_interior, von_mises_stress
+   use mfv_interior, only: has_interior, interior_type, von_mises_stress
    use mfv_interior_half_plane, only: line_load_stress, surface_stress_of
    use mfv_kinds, only: pi, wp
    use mfv_motions, only: bulk_motions, motion_approach, motion_count
    use mfv_node_status, only: in_contact
+   use mfv_state_interior, only: state_interior
+   use mfv_stress_search, only: estimate_in_layers, find_largest_at_interfaces, largest_type
    use mfv_tolerances, only: significant, visible
    use mfv_zone_edges, only: find_patches, largest_shear, outermost_edges, patch_type, rises_at_end, zone_edges_type
    implicit none
@@ -52,6 +54,8 @@ module mfv_load_extremes
       type(extreme_type) :: pressure, shear, lowest_stick, highest_stick, slip_range
       !> Largest tension along the surface of each body, and von Mises stress in it, where searched for.
       type(extreme_type) :: searched(candidate_count)
+      !> Largest tension and shear at the interfaces of the layers of each body.
+      type(extreme_type) :: interface_tension(2), interface_shear(2)
       !> Rows that may have these, 0 for none, and the estimates in them, force/length^2.
       integer :: row(most_rows, candidate_count) = 0
       real(wp) :: estimate(most_rows, candidate_count) = -1.0_wp
@@ -149,11 +153,34 @@ contains
          call lower(self%lowest_stick, edges%stick_ratio(), row)
       end if
       call estimate_stresses(model, state, patches, estimates)
+      call add_interfaces(self, model, state, row, estimates)
       do i = 1, candidate_count
          call add_estimate(self%estimate(:rows_of(i), i), estimates(i), place(i))
          if (place(i) > 0) self%row(place(i), i) = row
       end do
    end subroutine add_state
+
+   !> Add the tractions at the interfaces of layers; estimate the other stresses of bodies with layers by those of some points.
+   subroutine add_interfaces(self, model, state, row, estimates)
+      class(load_extremes_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      integer, intent(in) :: row
+      real(wp), intent(inout) :: estimates(:)
+      type(interior_type) :: interior
+      type(largest_type) :: tension, shear
+      logical :: available
+      integer :: side
+
+      do side = 1, 2
+         if (.not. model%scene%has_layers(side == 2)) cycle
+         call state_interior(model, state, side == 2, interior, available)
+         call find_largest_at_interfaces(interior, tension, shear)
+         call self%interface_tension(side)%raise(tension%value, row, tension%x, tension%y)
+         call self%interface_shear(side)%raise(shear%value, row, shear%x, shear%y)
+         call estimate_in_layers(interior, estimates(candidate_tension(side)), estimates(candidate_von_mises(side)))
+      end do
+   end subroutine add_interfaces
 
    !> Put an estimate among the largest ones, in place of the smallest; negative: none. `place`: where, 0 if it is not among them or
    !> equal to one.
@@ -265,7 +292,7 @@ contains
          real(wp) :: bulk, hoop, sign
 
          estimates([candidate_tension(side), candidate_von_mises(side)]) = -1.0_wp
-         if (.not. has_interior(body)) return
+         if (.not. has_interior(body) .or. body%elasticity%is_layered()) return
          bulk = state%fields%motion(bulk_motions(side))
          ! Surfaces that repeat have no bulk stress, but one that keeps their mean strain zero.
          associate (period => model%scene%mesh%period)

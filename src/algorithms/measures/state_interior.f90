@@ -57,8 +57,7 @@ contains
       ! Pressure only compresses most straight surfaces.
       stretches = model%scene%lower%elasticity%material%pressure_stretches()
       if (upper) stretches = model%scene%upper%elasticity%material%pressure_stretches()
-      stretches = stretches .or. model%scene%mesh%period > 0.0_wp .or. model%scene%lower%elasticity%is_layered() .or. &
-                  model%scene%upper%elasticity%is_layered()
+      stretches = stretches .or. model%scene%mesh%period > 0.0_wp .or. model%scene%has_layers(upper)
       available = model%scene%can_have_bulk_stress(upper) .and. .not. stretches .and. &
                   .not. maxval(abs(state%fields%shear)) > certified*maxval(state%fields%pressure)
       if (available) then

@@ -151,6 +151,8 @@ module mfv_scene
       procedure :: modulus
       procedure :: modulus_over
       procedure :: is_layered
+      procedure :: has_layers
+      procedure :: compressed_thickness
       procedure :: curvature
       procedure :: beta
       procedure :: has_datum
@@ -333,8 +335,31 @@ contains
    pure logical function is_layered(self)
       class(scene_type), intent(in) :: self
 
-      is_layered = self%lower%elasticity%is_layered() .or. self%upper%elasticity%is_layered()
+      is_layered = self%has_layers(.false.) .or. self%has_layers(.true.)
    end function is_layered
+
+   !> Total thickness of layers between rigid bodies, length; 0 if there is another elastic body.
+   pure real(wp) function compressed_thickness(self) result(thickness)
+      class(scene_type), intent(in) :: self
+
+      thickness = 0.0_wp
+      if ((.not. self%lower%rigid .and. self%lower%elasticity%has_datum()) .or. &
+          (.not. self%upper%rigid .and. self%upper%elasticity%has_datum()) .or. self%lower%is_matrix()) return
+      if (self%has_layers(.false.)) thickness = sum(self%lower%elasticity%layer%thickness)
+      if (self%has_layers(.true.)) thickness = thickness + sum(self%upper%elasticity%layer%thickness)
+   end function compressed_thickness
+
+   !> Whether the lower or the `upper` body has layers.
+   pure logical function has_layers(self, upper)
+      class(scene_type), intent(in) :: self
+      logical, intent(in) :: upper
+
+      if (upper) then
+         has_layers = self%upper%elasticity%is_layered()
+      else
+         has_layers = self%lower%elasticity%is_layered()
+      end if
+   end function has_layers
 
    !> Relative curvature K = 1/R1 + 1/R2 of dissertation eq. 6.1, 1/length.
    pure real(wp) function curvature(self)
@@ -353,10 +378,13 @@ contains
    end function beta
 
    !> Whether the displacements are measured at a datum inside of bodies: half-planes and the like, not circles.
-   elemental logical function has_datum(self)
+   pure logical function has_datum(self)
       class(scene_type), intent(in) :: self
 
       has_datum = .not. (self%lower%circular() .or. self%upper%circular() .or. self%lower%is_matrix())
+      if (.not. self%is_layered()) return
+      has_datum = has_datum .and. ((.not. self%lower%rigid .and. self%lower%elasticity%has_datum()) .or. &
+                                   (.not. self%upper%rigid .and. self%upper%elasticity%has_datum()))
    end function has_datum
 
    !> Datum of the displacements of both bodies together, length: the mean of the logarithms of their datums, weighted with their

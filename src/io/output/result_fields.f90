@@ -273,7 +273,8 @@ contains
          call add_body(list, 'upper', scene%upper)
          if (scene%modulus() > 0.0_wp) then
             call list%add('contact_modulus', scene%modulus(), 'force/length^2', 'modulus m of both bodies, 1/m = sum of '// &
-                          '(kappa + 1)/(4 G); of anisotropic bodies of their compliances A under pressure')
+                          '(kappa + 1)/(4 G); of anisotropic bodies of their compliances A under pressure; of layers: of '// &
+                          'the first ones')
             call list%add('dundurs_beta', scene%beta(), '1', "Dundurs' parameter beta, positive if the lower body "// &
                           "couples more strongly")
             pair = scene%near_field()
@@ -295,31 +296,58 @@ contains
       type(list_type), intent(inout) :: list
       character(*), intent(in) :: name
       type(body_type), intent(in) :: body
-      character(*), parameter :: places(6) = ['11', '12', '22', '16', '26', '66']
-      type(material_type) :: seen
+      character(:), allocatable :: layer
       integer :: i
 
       if (body%circular()) call list%add(name//'_radius', body%radius, 'length', 'radius of the '//name//' body')
       associate (elasticity => body%elasticity, material => body%elasticity%material)
          if (.not. material%exists()) return
-         if (material%is_isotropic()) then
-            call list%add(name//'_shear_modulus', material%shear_modulus, 'force/length^2', 'shear modulus of the '//name//' body')
-            call list%add(name//'_poisson_ratio', material%poisson_ratio, '1', "Poisson's ratio of the "//name//' body')
-            call list%add(name//'_kolosov_constant', material%kolosov, '1', "Kolosov's constant of the "//name//' body')
-         else
-            seen = material
-            if (name == 'upper') seen = material%mirrored()
-            do i = 1, size(places)
-               call list%add(name//'_compliance_'//places(i), seen%compliance(i), 'length^2/force', 'compliance s'//places(i)// &
-                             ' of the '//name//' body along x and y, in its plane state')
+         if (elasticity%is_layered()) then
+            call list%add(name//'_layers', size(elasticity%layer), 'layers of the '//name//' body, numbered from the surface down')
+            do i = 1, size(elasticity%layer)
+               layer = 'layer '//to_text(i)//' of the '//name//' body'
+               call list%add(name//'_layer_'//to_text(i)//'_thickness', elasticity%layer(i)%thickness, 'length', &
+                             'thickness of '//layer)
+               call add_material(list, name//'_layer_'//to_text(i), layer, elasticity%layer(i)%material, name == 'upper')
             end do
+            if (elasticity%base%exists()) call add_material(list, name//'_base', 'what is below the layers of the '//name// &
+                                                            ' body', elasticity%base, name == 'upper')
+            layer = 'the '//name//' body at its surface'
+         else
+            layer = 'the '//name//' body'
          end if
+         call add_material(list, name, layer, material, name == 'upper')
+         if (.not. elasticity%has_datum()) return
          call list%add(name//'_datum', elasticity%datum, 'length', 'distance from the origin at which displacements of the '// &
                        name//' body are measured')
          call list%add(name//'_datum_of_case', merge(1, 0, elasticity%datum_of_case), 'whether this is a default that depends '// &
                        'on the loads or the mesh of this case')
       end associate
    end subroutine add_body
+
+   !> A material; `name`: of its fields, `of`: whose it is; `upside_down`: seen from the upper body.
+   subroutine add_material(list, name, of, material, upside_down)
+      type(list_type), intent(inout) :: list
+      character(*), intent(in) :: name, of
+      type(material_type), intent(in) :: material
+      logical, intent(in) :: upside_down
+      character(*), parameter :: places(6) = ['11', '12', '22', '16', '26', '66']
+      type(material_type) :: seen
+      integer :: i
+
+      if (material%is_isotropic()) then
+         call list%add(name//'_shear_modulus', material%shear_modulus, 'force/length^2', 'shear modulus of '//of)
+         call list%add(name//'_poisson_ratio', material%poisson_ratio, '1', "Poisson's ratio of "//of)
+         call list%add(name//'_kolosov_constant', material%kolosov, '1', "Kolosov's constant of "//of)
+         return
+      end if
+      seen = material
+      if (upside_down) seen = material%mirrored()
+      do i = 1, size(places)
+         call list%add(name//'_compliance_'//places(i), seen%compliance(i), 'length^2/force', 'compliance s'//places(i)//' of '// &
+                       of//' along x and y, in its plane state')
+      end do
+   end subroutine add_material
 
    !> Compliance blocks of the scene, and memory of the kernels or matrices.
    subroutine add_compliance(list, simulation)
@@ -336,6 +364,9 @@ contains
             bytes = 0
             if (pair%deforms(i)) bytes = int(pair%body(i)%compliance%bytes())
             call list%add(bodies(i)//'_bytes', bytes, 'bytes of the '//bodies(i)//" body's kernels or matrix")
+            if (simulation%contact%model%scene%has_layers(i == 2)) &
+               call list%add(bodies(i)//'_kernel_error', pair%body(i)%compliance%kernel_error, '1', 'estimated error of the '// &
+                             'kernels of the layers of the '//bodies(i)//' body, over their largest value')
          end do
       end associate
    end subroutine add_compliance

@@ -162,7 +162,8 @@ contains
       integer :: i
 
       if (simulation%stretch() == over_steps) then
-         if (.not. any([(is_above_end(trim(names(i))), i=1, size(names))])) return
+         if (.not. any([(is_above_end(trim(names(i))), i=1, size(names))]) .and. &
+             .not. simulation%contact%model%scene%is_layered()) return
       end if
       over = 'over all steps: '
       if (simulation%stretch() == over_rows) over = 'over all rows: '
@@ -170,6 +171,8 @@ contains
       call add('largest tension', 'lower body', 'largest_lower_tension', 'upper body', 'largest_upper_tension')
       call add('largest tractions', 'pressure', 'largest_pressure', 'shear', 'largest_shear')
       call add('largest von Mises', 'lower body', 'largest_lower_von_mises', 'upper body', 'largest_upper_von_mises')
+      call add('lower interfaces', 'tension', 'largest_lower_interface_tension', 'shear', 'largest_lower_interface_shear')
+      call add('upper interfaces', 'tension', 'largest_upper_interface_tension', 'shear', 'largest_upper_interface_shear')
       call add('largest slip range', 'of a node', 'largest_slip_range', '', '')
       call add('stick ratio', 'smallest', 'smallest_stick_ratio', 'largest', 'largest_stick_ratio')
 
