@@ -1,6 +1,6 @@
 """MFV: two-dimensional frictional elastic contact by the Method of First Violation.
 
-`Scene` with `Body`, `Mesh`, `Friction`, `Step`, `Solver` and `Output` defines bodies and loads; `run` solves it, `Case` advances
+`Scene` with `Body`, `Layer`, `Mesh`, `Friction`, `Step`, `Solver` and `Output` defines bodies and loads; `run` solves it, `Case` advances
 it step by step; `study` solves many cases; `read` reads a result file, `stress` computes stresses inside the bodies, `plot` draws
 results, `animate` and `report` make animations and web pages, `compare` and `comparison_figure` compare two results,
 `load_history` has intermediate states, `identify` estimates parameters from measured loops, `joint` makes elements for structures,
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from .errors import LibraryNotFound, MfvError, NotAResult
     from .loads import Derivative, Loads, Progress
     from .result import Group, Result, read
-    from .scene import Body, Friction, History, Mesh, Output, Scene, Solver, Step, Wear
+    from .scene import Body, Friction, History, Layer, Mesh, Output, Scene, Solver, Step, Wear
     from .studies import Axis, Study, study
 
 check_required()
@@ -39,6 +39,7 @@ __all__ = [
     "History",
     "LibraryNotFound",
     "Loads",
+    "Layer",
     "Mesh",
     "MfvError",
     "NodeStatus",
@@ -72,7 +73,7 @@ _MODULES = {
     "errors": ("LibraryNotFound", "MfvError", "NotAResult"),
     "loads": ("Derivative", "Loads", "Progress"),
     "result": ("Group", "Result", "read"),
-    "scene": ("Body", "Friction", "History", "Mesh", "Output", "Scene", "Solver", "Step", "Wear"),
+    "scene": ("Body", "Friction", "History", "Layer", "Mesh", "Output", "Scene", "Solver", "Step", "Wear"),
     "studies": ("Axis", "Study", "study"),
 }
 _HOMES = {name: module for module, names in _MODULES.items() for name in names}

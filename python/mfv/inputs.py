@@ -7,7 +7,7 @@ from collections import Counter
 from typing import Any
 
 #: Groups that may occur several times; their keys are named group(number)%key, as in a study.
-REPEATED = ("body", "step")
+REPEATED = ("body", "layer", "step")
 
 #: The comment in an input that names an array given in memory.
 _IN_MEMORY = re.compile(r"^! '(.*)' was given in memory: ", flags=re.MULTILINE)

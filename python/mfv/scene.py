@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _html, errors
 from ._library import LARGEST_INTEGER, library, real_pointer, text_buffer, text_for, text_of, whole_text
 from ._suggestions import suggestion
-from .inputs import groups
+from .inputs import REPEATED, groups
 
 if TYPE_CHECKING:
     from typing_extensions import Self, Unpack
@@ -121,6 +121,27 @@ class KeyGroup:
         return _html.table([(name, _shown(value)) for name, value in self._everything().items()], type(self).__name__)
 
 
+@_keywords_only
+class Layer(KeyGroup):
+    """A layer bonded on a body: the keys of &layer, without `body`. Materials as those of bodies."""
+
+    thickness: float
+    elasticity: Literal["isotropic", "orthotropic", "anisotropic"] | None = None
+    shear_modulus: float | None = None
+    youngs_modulus: float | None = None
+    poisson_ratio: float | None = None
+    yield_strength: float | None = None
+    youngs_modulus_1: float | None = None
+    youngs_modulus_2: float | None = None
+    youngs_modulus_3: float | None = None
+    poisson_ratio_12: float | None = None
+    poisson_ratio_13: float | None = None
+    poisson_ratio_23: float | None = None
+    shear_modulus_12: float | None = None
+    compliances: Positions | None = None
+    axis_angle: float | None = None
+
+
 class Elastic(TypedDict, total=False):
     """Keys of every body that may be elastic."""
 
@@ -140,6 +161,7 @@ class Elastic(TypedDict, total=False):
     shear_modulus_12: float | None
     compliances: Positions | None
     axis_angle: float | None
+    layers: Sequence[Layer] | None
 
 
 class Round(Elastic, total=False):
@@ -167,7 +189,8 @@ if TYPE_CHECKING:
 
 @_keywords_only
 class Body(KeyGroup):
-    """A body: the keys of &body. `data`: arrays in place of the `file` of a profile or a matrix."""
+    """A body: the keys of &body. `data`: arrays in place of the `file` of a profile or a matrix. `layers`: bonded on it, from the
+    surface down; on a rigid body they are all that deforms."""
 
     shape: Literal["half_plane", "disk", "hole", "flat_punch", "rounded_punch", "wedge", "power", "profile", "matrix", "wave"]
     rigid: bool | None = None
@@ -203,8 +226,9 @@ class Body(KeyGroup):
     level: Literal["none", "mean", "line", "parabola"] | None = None
     centred: bool | None = None
     data: Data | None = None
+    layers: Sequence[Layer] | None = None
 
-    _not_keys: ClassVar[tuple[str, ...]] = ("data",)
+    _not_keys: ClassVar[tuple[str, ...]] = ("data", "layers")
 
     @classmethod
     def half_plane(cls, **elastic: Unpack[Elastic]) -> Body:
@@ -503,9 +527,12 @@ class Scene(KeyGroup):
     @classmethod
     def _of_groups(cls, parts: Sequence[tuple[str, dict[str, Any]]], name: str) -> Scene:
         """The scene of groups by name."""
+        layers = [(keys.pop("body"), Layer(**keys)) for group, keys in parts if group == "layer"]
         bodies = [Body(**keys) for group, keys in parts if group == "body"]
+        for number, body in enumerate(bodies, start=1):
+            body.layers = [layer for of, layer in layers if of == number] or None
         steps = [Step(**keys) for group, keys in parts if group == "step"]
-        single = {group: keys for group, keys in parts if group not in ("body", "step")}
+        single = {group: keys for group, keys in parts if group not in REPEATED}
         settings: dict[str, Any] = {group: kind(**single[group]) for group, kind in _SINGLE.items() if group in single}
         lower, upper = bodies
         return cls(lower, upper, steps=steps, name=name, **settings, **single.get("scene", {}))
@@ -549,8 +576,13 @@ class Scene(KeyGroup):
     def _parts(self) -> list[tuple[str, KeyGroup]]:
         """The groups of the namelist with their numbers, without &scene."""
         parts: list[tuple[str, KeyGroup]] = [("body(1)", self.lower), ("body(2)", self.upper)]
+        parts += [(f"layer({number})", layer) for number, (_, layer) in enumerate(self._layers(), start=1)]
         parts += [(name, getattr(self, name)) for name in _SINGLE if getattr(self, name) is not None]
         return parts + [(f"step({number})", step) for number, step in enumerate(self.steps, start=1)]
+
+    def _layers(self) -> list[tuple[int, Layer]]:
+        """The layers of both bodies with the number of their body, in the order of the namelist."""
+        return [(number, layer) for number, body in enumerate((self.lower, self.upper), start=1) for layer in body.layers or ()]
 
     def _data_of_instrument(self, body: Body) -> Data | None:
         """The points of a profile whose file is not a text, in `length_unit`; None for others. Raises InputError."""
@@ -569,6 +601,8 @@ class Scene(KeyGroup):
         """Raises TypeError for an attribute of the wrong class."""
         for name in ("lower", "upper"):
             _check_kind(name, getattr(self, name), Body)
+            for number, layer in enumerate(getattr(self, name).layers or ()):
+                _check_kind(f"layers[{number}] of the {name} body", layer, Layer)
         for name, kind in _SINGLE.items():
             if getattr(self, name) is not None:
                 _check_kind(name, getattr(self, name), kind)
@@ -581,8 +615,11 @@ class Scene(KeyGroup):
         self._check_parts()
         with _scene_handle("", self.name) as handle:
             statuses = _set_keys(handle, "scene", self.keys())
+            bodies_of_layers = iter([number for number, _ in self._layers()])
             for group, part in self._parts():
                 keys, data = part.keys(), getattr(part, "data", None)
+                if isinstance(part, Layer):
+                    keys["body"] = next(bodies_of_layers)
                 if isinstance(part, Body) and data is None:
                     data = self._data_of_instrument(part)
                 if data is not None:
@@ -609,6 +646,7 @@ _SINGLE: dict[str, type[KeyGroup]] = {
 #: Default names of arrays.
 _USUAL: dict[type[KeyGroup], str] = {
     Body: "Body.disk(0.25, rigid=True)",
+    Layer: "Layer(thickness=0.01, youngs_modulus=400.0, poisson_ratio=0.25)",
     Mesh: "Mesh(nodes=101, half_width=0.012)",
     Friction: "Friction.coulomb(0.7)",
     Wear: "Wear(coefficient=1.0e-8)",

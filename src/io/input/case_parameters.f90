@@ -95,8 +95,8 @@ contains
          parameter%step = number
          if (why == '' .and. (number < next .or. simulation%leg%number > 0 .and. number == next)) &
             why = 'step '//to_text(number)//' has already begun; the next one is step '//to_text(next)
-      else if (group /= 'body' .and. group /= 'friction') then
-         why = 'must be a key of &body or &friction, or a target of a step'
+      else if (group /= 'body' .and. group /= 'layer' .and. group /= 'friction') then
+         why = 'must be a key of &body, &layer or &friction, or a target of a step'
       else if (catalogue%keys(catalogue%place(group, key))%kind /= kind_real) then
          why = 'is not a number'
       else if (simulation%load_summary%steps > 0) then

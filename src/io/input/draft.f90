@@ -265,6 +265,8 @@ contains
          if (case%scene%lower%elasticity%material%is_anisotropic() .or. &
              case%scene%upper%elasticity%material%is_anisotropic()) then
             call set_error(fault, MFV_INPUT_ERROR, dundurs_key//' needs isotropic bodies')
+         else if (case%scene%is_layered()) then
+            call set_error(fault, MFV_INPUT_ERROR, dundurs_key//' needs bodies without layers')
          else if (case%scene%modulus() > 0.0_wp) then
             call self%write_materials(flexibilities(beta, 1.0_wp/case%scene%modulus()))
          else

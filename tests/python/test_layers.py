@@ -1,0 +1,222 @@
+"""Layers against independent solutions: the same bodies as dense matrices, strips by Winkler's and Johnson's limits, a coated cylinder by
+finite elements; stresses in balance; keys, refusals, Python and text alike."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import os
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.linalg import expm
+from test_anisotropic import near_field, random_material, reduced, steps, turned
+
+import mfv
+from mfv import Body, Friction, Layer, Mesh, Output, Scene, Solver, Step
+
+Numbers = NDArray[np.float64]
+ALLOY = {"youngs_modulus": 70e3, "poisson_ratio": 0.33}
+SOFT = {"youngs_modulus": 4e3, "poisson_ratio": 0.42}
+
+
+@dataclasses.dataclass
+class Material:
+    """A material by its keys; its reduced compliances in plane strain along x and y, and its near field A, At, M, B."""
+
+    keys: dict[str, Any]
+
+    def compliance(self, upside_down: bool = False) -> Numbers:
+        if "youngs_modulus" in self.keys:
+            e, nu = self.keys["youngs_modulus"], self.keys["poisson_ratio"]
+            s = np.array([[1 - nu**2, -nu * (1 + nu), 0], [-nu * (1 + nu), 1 - nu**2, 0], [0, 0, 2 * (1 + nu)]]) / e
+        else:
+            angle = self.keys.get("axis_angle", 0.0)
+            s = turned(reduced(self.keys), -angle if upside_down else angle)
+        return np.asarray(s)
+
+    def surface(self, upside_down: bool = False) -> tuple[float, float, float, float]:
+        if "youngs_modulus" in self.keys:
+            e, nu = self.keys["youngs_modulus"], self.keys["poisson_ratio"]
+            shear = e / (2 * (1 + nu))
+            return (1 - nu) / shear, (1 - nu) / shear, 0.0, (1 - 2 * nu) / (2 * shear)
+        return near_field(self.compliance(upside_down))
+
+    def decay(self, upside_down: bool = False) -> float:
+        """The least decay of waves over k and a depth: the smallest imaginary part of the roots."""
+        (s11, s12, s16), (_, s22, s26), (_, _, s66) = self.compliance(upside_down)
+        roots = np.roots([s11, -2 * s16, 2 * s12 + s66, -2 * s26, s22]).imag
+        return float(roots[roots > 0].min())
+
+    def rates(self, upside_down: bool = False) -> NDArray[np.complex128]:
+        """How (k u, k v, sigma_xy, sigma_yy) of exp(i k x) changes with k y, y out of the body."""
+        (s11, s12, s16), (_, s22, s26), (_, _, s66) = self.compliance(upside_down)
+        stress = np.array([1j, 0, -s16, -s12]) / s11  # sigma_xx
+        return np.array([
+            s16 * stress + [0, -1j, s66, s26],
+            s12 * stress + [0, 0, s26, s22],
+            -1j * stress,
+            [0, 0, -1j, 0],
+        ])  # fmt: skip
+
+
+def waves(layers: list[tuple[float, Material]], base: Material | None, k: Numbers, flip: bool) -> NDArray[np.complex128]:
+    """k times the displacements (u, v) of the surface by waves of (sigma_xy, sigma_yy), shape (k, 2, 2): all displacements and
+    tractions between thin slices of the layers from one linear system."""
+    seen, decayed = [], 0.0
+    for t, m in layers:
+        if decayed > 25:  # what is below does not matter
+            break
+        seen.append((t, m))
+        decayed += k.min() * t * m.decay(flip)
+    if decayed > 25:
+        (_, base), seen = seen[-1], seen[:-1]
+    slices = [(t / n, m) for t, m in seen for n in [math.ceil(t * k.max() / 1.5)] for _ in range(n)]
+    size = 4 * (len(slices) + 1)
+    system = np.zeros((len(k), size, size), dtype=complex)
+    steps_of = {}
+    for i, (t, m) in enumerate(slices):
+        key = (t, id(m))
+        if key not in steps_of:
+            steps_of[key] = expm(-k[:, None, None] * t * m.rates(flip))
+        system[:, 4 * i : 4 * i + 4, 4 * i : 4 * i + 4] = steps_of[key]
+        system[:, 4 * i : 4 * i + 4, 4 * i + 4 : 4 * i + 8] = -np.eye(4)
+    end = np.zeros((2, 4), dtype=complex)
+    end[:, :2] = np.eye(2)
+    if base:
+        a, at, m, b = base.surface(flip)
+        end[:, 2:] = -np.array([[at, -(m + 1j * b)], [-(m - 1j * b), a]])
+    system[:, size - 4 : size - 2, size - 4 :] = end
+    system[:, size - 2, 2] = system[:, size - 1, 3] = 1
+    right = np.zeros((len(k), size, 2), dtype=complex)
+    right[:, size - 2, 0] = right[:, size - 1, 1] = 1
+    return np.asarray(np.linalg.solve(system, right)[:, :2, :])
+
+
+def matrix(
+    layers: list[tuple[float, Material]], base: Material | None, x: Numbers, datum: float, flip: bool = False
+) -> Numbers:
+    """Displacements by nodal forces, shape (2n, 2n), normal components first: the first layer in closed form, and the difference
+    by Gauss quadrature in equal intervals of k."""
+    top = layers[0][1]
+    a, at, m, b = top.surface(flip)
+    width = x[1] - x[0]
+    n = len(x)
+    distance = np.arange(n) * width
+    last = 40 / (2 * layers[0][0] * top.decay(flip))
+    ends = [0.0]
+    for end in last * 2.0 ** np.arange(-40.0, 1.0):
+        pieces = max(math.ceil((end - ends[-1]) * (distance[-1] + datum) / 6), 1)
+        ends += list(np.linspace(ends[-1], end, pieces + 1)[1:])
+    points, weights = np.polynomial.legendre.leggauss(16)
+    middles, halves = (np.array(ends[1:]) + ends[:-1]) / 2, np.diff(ends) / 2
+    k = (middles[:, None] + halves[:, None] * points).ravel()
+    weight = (halves[:, None] * weights).ravel()
+    z = np.concatenate([waves(layers, base, part, flip) for part in np.array_split(k, max(len(k) // 400, 1))])
+    z = z - np.array([[at, -(m + 1j * b)], [-(m - 1j * b), a]])
+    far = 0.0
+    if base is None:  # no datum: (1 - exp(-k c))/k is known in closed form
+        c = 2 * layers[0][0]
+        z = z + np.array([[at, -(m + 1j * b)], [-(m - 1j * b), a]]) * np.exp(-k * c)[:, None, None]
+        far = 1.0
+    box = weight * width * np.sinc(k * width / 2 / np.pi) / (np.pi * k)
+    even = np.cos(np.outer(distance, k)) - (1 - far) * np.cos(k * datum)
+    odd = np.sin(np.outer(distance, k))
+    r = distance / (width / 2)
+    logs = (r + 1) * np.log(r + 1) - (r - 1) * np.log(np.maximum(np.abs(r - 1), 1e-300))
+    direct = (width / 2 / np.pi) * (2 * math.log(2 * datum / width) + 2 - logs)
+    step = width / 2 * np.clip(r, -1, 1)
+    if base is None:
+        edges = np.array([distance + width / 2, distance - width / 2])
+        squares = edges * np.log((edges**2 + c**2) / datum**2) - 2 * edges + 2 * c * np.arctan(edges / c)
+        direct = direct + (squares[0] - squares[1]) / (2 * np.pi)
+        arcs = edges * np.arctan(edges / c) - c / 2 * np.log(edges**2 + c**2)
+        step = step - (arcs[0] - arcs[1]) / np.pi
+    wp = a * direct + even @ (box * z[:, 1, 1].real)
+    ut = at * direct + even @ (box * z[:, 0, 0].real)
+    mixed = m * direct - even @ (box * (z[:, 0, 1] + z[:, 1, 0]).real) / 2
+    skew = b * step + odd @ (box * -(z[:, 0, 1] - z[:, 1, 0]).imag) / 2
+    lag = np.arange(n)[:, None] - np.arange(n)[None, :]
+    w, u, e, o = (kernel[np.abs(lag)] for kernel in (wp, ut, mixed, skew))
+    o = np.sign(lag) * o
+    return np.block([[w, e + o], [e - o, u]]) / width
+
+
+def random_layers(draw: np.random.Generator, scale: float) -> list[tuple[float, Material]]:
+    """One or two layers, a tenth of `scale` or thicker, isotropic, or orthotropic at any angle."""
+    layers = []
+    for _ in range(int(draw.integers(1, 3))):
+        keys: dict[str, Any] = {"youngs_modulus": 10 ** draw.uniform(3.2, 5.2), "poisson_ratio": draw.uniform(0, 0.5)}
+        if draw.random() < 0.3:
+            # Waves that are shifted along the surface need many points here.
+            keys = {**random_material(draw), "axis_angle": float(draw.choice([0.0, 90.0, draw.uniform(-20, 20)]))}
+        layers.append((scale * 10 ** draw.uniform(-0.7, 0.4), Material(keys)))
+    return layers
+
+
+def layer(thickness: float, material: Material) -> Layer:
+    kind = "isotropic" if "youngs_modulus" in material.keys else "orthotropic"
+    return Layer(thickness=thickness, elasticity=kind, **material.keys)
+
+
+@pytest.mark.parametrize("seed", range(200 if os.environ.get("MFV_DEEP") else 10))
+def test_a_dense_matrix_gives_the_same(seed: int) -> None:
+    """Random layers on half-planes and rigid bases, one or both bodies, all couplings: tractions to round-off, the same events."""
+    draw = np.random.default_rng(seed)
+    nodes, half_width, radius, datum = 32, 1.5, 60.0, 4.0
+    x = (np.arange(nodes) + 0.5) * 2 * half_width / nodes - half_width
+    mu, coupling = draw.uniform(0.2, 0.8), ("full", "full", "goodman", "none")[seed % 4]
+    sign = np.array([1.0, -1.0])
+    total = np.zeros((2 * nodes, 2 * nodes))
+    bodies = []
+    for side in range(2 if seed % 2 else 1):
+        stack = random_layers(draw, half_width)
+        base = None if draw.random() < 0.3 else Material(dict(ALLOY) if draw.random() < 0.7 else random_material(draw))
+        part = matrix(stack, base, x, datum, flip=side == 1)
+        total += part * np.kron(np.outer(sign, sign), np.ones((nodes, nodes))) if side else part
+        keys: dict[str, Any] = {"rigid": True}
+        if base:
+            keys = {"datum": datum, **base.keys}
+            if "youngs_modulus" not in base.keys:
+                keys["elasticity"] = "orthotropic"
+        bodies.append({**keys, "layers": [layer(*one) for one in stack]})
+    bodies.append({"rigid": True})
+    normal = (total[0, 0] - total[0, 1]) * 2 * math.pi / (3 * math.log(3))
+    force = math.pi * (0.5 * half_width) ** 2 / (2 * radius * normal)
+    # The contact within the mesh, whatever the layers.
+    force *= min(1.0, 0.6 * half_width / contact_width(total[:nodes, :nodes], x, radius, force)) ** 2
+    loads, friction = steps(draw, force, mu), Friction.coulomb(mu)
+    # Not symmetric, so that no two nodes change their status at once.
+    height = x**2 / (2 * radius) * (1 + 0.1 * x / half_width)
+    direct = Scene(
+        Body.half_plane(**bodies[0]), Body.profile(x, height, **bodies[1]), steps=loads, friction=friction, coupling=coupling,
+        mesh=Mesh(nodes=nodes, half_width=half_width),
+    )  # fmt: skip
+    dense = Scene(
+        Body.matrix(x, compliance=total, width=np.full(nodes, x[1] - x[0])), Body.profile(x, height, rigid=True),
+        steps=loads, friction=friction, coupling=coupling,
+    )  # fmt: skip
+    one, other = direct.run(check=True), dense.run(check=True)
+    scale = np.max(other.state.pressure)
+    for name in ("pressure", "shear"):
+        np.testing.assert_allclose(getattr(one.state, name), getattr(other.state, name), rtol=0, atol=1e-11 * scale, err_msg=name)
+    assert one.summary.events == other.summary.events
+    assert one.summary.dissipation == pytest.approx(other.summary.dissipation, rel=1e-9, abs=1e-14)
+    assert one.summary.largest_residual < 1e-10
+
+
+def contact_width(compliance: Numbers, x: Numbers, radius: float, force: float) -> float:
+    """Half-width of a frictionless contact, by solving for the pressures that close the gap at all nodes within it."""
+    gap = x**2 / (2 * radius)
+    for count in range(2, len(x) // 2):
+        inside = slice(len(x) // 2 - count, len(x) // 2 + count)
+        block = compliance[inside, inside]
+        unit = np.linalg.solve(block, np.ones(2 * count))
+        forces = np.linalg.solve(block, -gap[inside])
+        forces += unit * (force - forces.sum()) / unit.sum()
+        if forces[0] < 0:
+            return float(abs(x[inside][0]))
+    return float(x[-1])
