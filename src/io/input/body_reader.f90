@@ -116,11 +116,12 @@ contains
       allowed = 'shape rigid'
       if (needed_keys(shape) /= '') allowed = allowed//' '//trim(needed_keys(shape))
       if (shape == 'profile') allowed = allowed//' interpolation position_scale height_scale level centred'
-      if (shape == 'matrix' .or. shape == 'flat_punch') then
-         if (size(layers_of(reader, body)) > 0) &
-            call reader%complain('layer', 1, 'body', 'a '//shape//' cannot have layers', error)
-         if (allocated(error)) return
-      end if
+      associate (layers => layers_of(reader, body))
+         if ((shape == 'matrix' .or. shape == 'flat_punch') .and. size(layers) > 0) then
+            call reader%complain('layer', layers(1), 'body', 'a '//shape//' cannot have layers', error)
+            return
+         end if
+      end associate
       if (shape /= 'matrix' .and. .not. rigid) then
          elasticity = reader%text_value('body', body, 'elasticity')
          allowed = allowed//' elasticity yield_strength datum '//trim(material_keys(elasticity))
