@@ -28,7 +28,9 @@ WORK = {
 #: Numbers of nodes, which begin at the left end; and counts that an event at the very end of a step may change.
 NUMBERS = {"first_node", "last_node", "stick_nodes", "slip_nodes"}
 #: Places of values that occur at several places of a symmetric contact (test_load_extremes compares them with the states).
-TIED = {"largest_shear_x", "largest_slip_range_x"}
+TIED = {"largest_shear_x", "largest_slip_range_x"} | {
+    f"largest_{body}_interface_{traction}_x" for body in ("lower", "upper") for traction in ("tension", "shear")
+}
 #: Quantities that change their sign in the mirror image.
 ODD = {
     "tangential_force", "shift", "shear", "slip", "moment", "rotation", "tangential_displacement",
@@ -125,7 +127,7 @@ def exchanged(name: str, unit: str, values: np.ndarray) -> tuple[str, np.ndarray
         "patch_shift_loading", "patch_shift_reversal", "patch_shift_return",
         "tangential_displacement", "upper_tangential_displacement",
     }  # fmt: skip
-    sign = -1.0 if name in turned or other_side(name) != name else 1.0
+    sign = -1.0 if name in turned or other_side(name) != name or name.endswith("_y") else 1.0
     return other_body(other_side(name)), sign * values[::-1] if is_along_the_surface(name) else sign * values
 
 

@@ -10,9 +10,11 @@ import numpy as np
 
 from .problem import Keys, Problem
 
-#: From these seeds on some bodies are anisotropic, and most surfaces repeat; the numbers of smaller seeds do not change.
+#: From these seeds on some bodies are anisotropic, most surfaces repeat, and most bodies have layers; the numbers of smaller seeds do not
+#: change.
 ANISOTROPIC = 200_000
 PERIODIC = 300_000
+LAYERED = 400_000
 
 
 class Draw:
@@ -60,11 +62,15 @@ def problem(seed: int) -> Problem:
     if draw.chance(0.25):
         scene["plane"] = "stress"
     scene["coupling"] = draw.one_of(full=0.5, goodman=0.25, none=0.25)
-    _add_bodies(draw, made, sizes, Draw(seed + 2**32) if seed >= ANISOTROPIC else None)
+    _add_bodies(draw, made, sizes, Draw(seed + 2**32) if ANISOTROPIC <= seed < LAYERED else None)
+    layers = Draw(seed + 2**34)
+    if seed >= LAYERED and made.labels["shape"] != "pin":
+        _add_layers(layers, made, sizes)
     law = _add_friction(draw, made, sizes)
     loads = _add_loads(draw, made, sizes, law)
     mesh = _add_mesh(draw, made, sizes, law, loads)
-    if seed >= PERIODIC and made.labels["shape"] != "pin" and loads != "rotation" and not _has_bulk_stress(made):
+    repeats = seed >= PERIODIC and (seed < LAYERED or layers.chance(0.3))
+    if repeats and made.labels["shape"] != "pin" and loads != "rotation" and not _has_bulk_stress(made):
         _repeat(Draw(seed + 2**33), made, sizes)
     _add_solver(draw, made, law, mesh)
     made.one("output").update(states="steps", history="steps", error_estimate=True)
@@ -486,6 +492,28 @@ def _repeat(draw: Draw, made: Problem, sizes: Sizes) -> None:
         body.pop("datum", None)
         if body["shape"] in ("disk", "hole") and not body.get("rigid"):
             body.setdefault("elasticity", "half_plane")
+
+
+def _add_layers(draw: Draw, made: Problem, sizes: Sizes) -> None:
+    """Coat bodies; a rigid one, too."""
+    plane = made.one("scene").get("plane", "strain")
+    softest = 0.0
+    for number, body in enumerate(made.all("body"), start=1):
+        if body["shape"] == "flat_punch" or draw.chance(0.4 if not body.get("rigid") else 0.75):
+            continue
+        stiffness = 2.6 / sizes.modulus if body.get("rigid") else compliance(body, plane)
+        for _ in range(draw.whole(1, 2)):
+            ratio = draw.between(0, 0.5)
+            material: Keys = {"shear_modulus": draw.power(-0.7, 0.9) * (1 - ratio) / stiffness, "poisson_ratio": ratio}
+            softest = max(softest, compliance(material, plane))
+            if draw.chance(0.25):
+                _make_anisotropic(draw, material, plane)
+            made.groups.append(("layer", {"body": number, "thickness": sizes.half_width * draw.power(-1.0, 0.5), **material}))
+        for key in ("elasticity", "kernel", "harmonics"):
+            body.pop(key, None)
+    # Not wider than without them.
+    sizes.force /= max(1.0, 0.5 * softest * sizes.modulus)
+    sizes.approach /= max(1.0, 0.5 * softest * sizes.modulus)
 
 
 def _add_solver(draw: Draw, made: Problem, law: str, mesh: str) -> None:

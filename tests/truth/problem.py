@@ -106,6 +106,9 @@ class Problem:
             self._read_files(name, keys)
         single = {name: kind(**keys) for name, keys in groups if (kind := _KINDS.get(name))}
         lower, upper = (mfv.Body(**keys) for name, keys in groups if name == "body")
+        layers = [(keys.pop("body"), mfv.Layer(**keys)) for name, keys in groups if name == "layer"]
+        for number, body in enumerate((lower, upper), start=1):
+            body.layers = [layer for of, layer in layers if of == number] or None
         scene = next((keys for name, keys in groups if name == "scene"), {})
         return mfv.Scene(lower, upper, steps=[mfv.Step(**keys) for name, keys in groups if name == "step"], **single, **scene)
 

@@ -21,7 +21,8 @@ SLIPPERY = 1.0e-3
 
 #: Names of quantities and the attribute of `Scales` that is their scale; the first that matches counts.
 _TABLE = [
-    (r".*(left|right)|contact_centre.*|.*_edge|.*(tension|pressure|von_mises)_[xy]|x|contact_length|slip_zone.*", "half_width"),
+    (r".*(left|right)|contact_centre.*|.*_edge|.*(tension|shear|pressure|von_mises)_[xy]|x|contact_length|slip_zone.*", "half_width"),
+    (r".*interface_(tension|shear)", "pressure"),
     (r".*stick_ratio.*|patch_shift.*|change|loss_factor|creepage_number", "one"),
     (r"dissipation_number", "friction_squared"),
     (r"shear_number", "friction"),

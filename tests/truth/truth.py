@@ -134,7 +134,7 @@ def _form(problem: Problem) -> _Form | None:
     bodies = problem.all("body")
     plane = [body for body in bodies if body["shape"] == "half_plane" and not body.get("rigid")]
     rigid = [body for body in bodies if body.get("rigid")]
-    if len(plane) != 1 or len(rigid) != 1 or problem.has("mesh", "period"):
+    if len(plane) != 1 or len(rigid) != 1 or problem.has("mesh", "period") or problem.has("layer"):
         return None
     keys = rigid[0]
     if keys["shape"] == "disk" and problem.has("mesh", "gap") and problem.one("mesh")["gap"] == "parabolic":
