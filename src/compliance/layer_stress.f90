@@ -17,6 +17,8 @@ module mfv_layer_stress
    integer, parameter :: row_functions = 6*loads
    !> Terms of the series in x and in the depth; intervals of x until it doubles.
    integer, parameter :: terms = 24, terms_down = 20, intervals_per_doubling = 2
+   !> The least thickness, over the distances that are asked for, as in mfv_smooth_kernel, which tells the error.
+   real(wp), parameter :: thinnest = 1.0e-8_wp
 
    !> The functions at one depth.
    type :: stress_row_type
@@ -247,13 +249,15 @@ contains
    pure subroutine make_rows(self, number, depths, scale, reach, rows)
       class(layer_stress_type), intent(in) :: self
       integer, intent(in) :: number
-      real(wp), intent(in) :: depths(:), scale, reach
+      real(wp), intent(in) :: depths(:), reach
+      real(wp), value :: scale
       type(stress_row_type), intent(out) :: rows(:)
       complex(wp), allocatable :: k(:), weight(:), even(:, :), odd(:, :), waves(:, :)
       real(wp), allocatable :: ends(:), x(:), values(:, :, :), mean(:)
       real(wp) :: turn(terms, terms)
       integer :: i, j, m, count, n
 
+      scale = max(scale, thinnest*max(reach, self%period))
       ends = ends_of(scale, self%layers%slant(), merge(0.5_wp*self%period, reach, self%period > 0.0_wp))
       if (self%period > 0.0_wp) then
          n = ceiling(last_exponent/scale*self%period/(2.0_wp*pi))

@@ -15,7 +15,7 @@ module mfv_layers
    use mfv_near_field, only: near_field_of, near_field_type
    implicit none
    private
-   public :: layer_type, layers_type, new_layers, wave_stress, loads
+   public :: layer_type, layers_type, new_layers, loads, is_moderate
 
    !> One layer.
    type :: layer_type
@@ -82,6 +82,17 @@ contains
       self%rigid_base = .not. base%exists()
       if (.not. self%rigid_base) self%base = wave_layer_of(layer_type(0.0_wp, base))
    end function new_layers
+
+   !> Whether the stiffnesses of a material along its axes are close enough for the series of exp: otherwise waves that hardly decay
+   !> would need too many steps.
+   pure logical function is_moderate(material)
+      type(material_type), intent(in) :: material
+      real(wp), parameter :: most_steps = 1.0e3_wp
+      type(wave_layer_type) :: layer
+
+      layer = wave_layer_of(layer_type(1.0_wp, material))
+      is_moderate = layer%norm <= most_steps*layer%decay
+   end function is_moderate
 
    pure type(wave_layer_type) function wave_layer_of(layer) result(self)
       type(layer_type), intent(in) :: layer

@@ -25,6 +25,8 @@ module mfv_smooth_kernel
 
    !> Terms of a series; points of the mean over an interval of x; most halvings.
    integer, parameter :: terms = 24, mean_points = 12, most_halvings = 8
+   !> The least thickness, over the distances that are asked for, and the most modes.
+   real(wp), parameter :: thinnest = 1.0e-8_wp, most_modes = 1.0e6_wp
 
    type :: smooth_kernel_type
       !> Distance of the nearest image of the load, length, and period, 0 without.
@@ -63,16 +65,17 @@ contains
       real(wp) :: farthest, largest, to
       integer :: i
 
-      self%image = layers%nearest_image()
       self%period = period
       do i = 1, mean_points
          call gauss_points(-1.0_wp, 1.0_wp, self%place(:i, i), self%weight(:i, i))
       end do
       farthest = merge(0.5_wp*period, reach, period > 0.0_wp)
+      ! Of still thinner layers the error shows that these are not smooth over this length.
+      self%image = max(layers%nearest_image(), thinnest*farthest)
       if (period > 0.0_wp) then
-         spectrum = modes_of(layers, datum, period)
+         spectrum = modes_of(layers, datum, period, self%image)
       else
-         spectrum = spectrum_of(layers, datum, max(farthest, datum), 1.0_wp)
+         spectrum = spectrum_of(layers, datum, max(farthest, datum), self%image, 1.0_wp)
       end if
       largest = maxval(abs(layers%compliance((0.0_wp, 0.0_wp)))) + maxval(abs(layers%layer(1)%endless))
       allocate (self%ends(1), self%series(terms, smooth_kernels, 0))
@@ -83,7 +86,9 @@ contains
          call add_interval(self, spectrum, self%ends(size(self%ends)), to, largest, most_halvings)
          to = 2.0_wp*to
       end do
-      if (.not. period > 0.0_wp) self%error = difference(self, spectrum_of(layers, datum, max(farthest, datum), 0.6_wp), largest)
+      if (.not. period > 0.0_wp) &
+         self%error = difference(self, spectrum_of(layers, datum, max(farthest, datum), self%image, 0.6_wp), largest)
+      if (self%image > layers%nearest_image() .or. last_exponent/self%image*period > 2.0_wp*pi*most_modes) self%error = 1.0_wp
    end function new_smooth_kernel
 
    !> Distance up to which F is known, length.
@@ -116,14 +121,14 @@ contains
    end function difference
 
    !> The integral for distances up to `reach`; `part`: see mfv_wave_integral.
-   type(spectrum_type) function spectrum_of(layers, datum, reach, part) result(self)
+   type(spectrum_type) function spectrum_of(layers, datum, reach, image, part) result(self)
       type(layers_type), intent(in) :: layers
-      real(wp), intent(in) :: datum, reach, part
+      real(wp), intent(in) :: datum, reach, image, part
       complex(wp), allocatable :: weight(:)
       integer :: j
 
       self%rigid_base = layers%rigid_base
-      self%image = layers%nearest_image()
+      self%image = image
       self%datum = datum
       self%limit = real(functions_of(layers, (0.0_wp, 0.0_wp)), wp)
       call new_wave_integral(self%image, reach, layers%slant(), part, self%k, weight)
@@ -149,12 +154,12 @@ contains
 
    !> The sum over the modes of a surface that repeats. The mean displacement by a uniform traction is that of the base, as without
    !> layers, and the compression of the layers.
-   type(spectrum_type) function modes_of(layers, datum, period) result(self)
+   type(spectrum_type) function modes_of(layers, datum, period, image) result(self)
       type(layers_type), intent(in) :: layers
-      real(wp), intent(in) :: datum, period
+      real(wp), intent(in) :: datum, period, image
       integer :: m, modes
 
-      modes = ceiling(last_exponent/layers%nearest_image()*period/(2.0_wp*pi))
+      modes = ceiling(min(last_exponent/image*period/(2.0_wp*pi), most_modes))
       self%period = period
       allocate (self%k(modes), self%value(smooth_kernels, modes))
       do m = 1, modes

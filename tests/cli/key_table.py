@@ -4,7 +4,7 @@ missing. tests/cli/test_bad_input.py makes the faults of it; it fails where `--k
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 #: Groups of a scene as they are written: name, and keys with their values.
 Groups = list[tuple[str, dict[str, str]]]
@@ -32,10 +32,21 @@ ORTHOTROPIC = {
 }  # fmt: skip
 ANISOTROPIC = {"shape": "'half_plane'", "elasticity": "'anisotropic'", "compliances": "1, -0.3, 1, 0.1, 0, 2.6, -0.3, -0.3, 1, 0"}
 
+
+
+def layered(material: dict[str, str]) -> Groups:
+    """A scene with a layer of a material."""
+    groups = scene(ELASTIC, RIGID_DISK, MESH, COULOMB, PRESS, SHEAR)
+    return groups[:3] + [("layer", {"body": "1", "thickness": "0.004", **material})] + groups[3:]
+
+
 #: Scenes in which keys make sense. The files that they name are made by the test.
 SCENES: dict[str, Groups] = {
     "cylinder": scene(ELASTIC, RIGID_DISK, MESH, COULOMB, PRESS, SHEAR),
     "composite": scene(ORTHOTROPIC, RIGID_DISK, MESH, COULOMB, PRESS, SHEAR),
+    "coated": layered({"youngs_modulus": "2.0", "poisson_ratio": "0.3"}),
+    "coated composite": layered({key: value for key, value in ORTHOTROPIC.items() if key != "shape"}),
+    "coated crystal": layered({key: value for key, value in ANISOTROPIC.items() if key != "shape"}),
     "crystal": scene(ANISOTROPIC, RIGID_DISK, MESH, COULOMB, PRESS, SHEAR),
     "free mesh": scene(ELASTIC, RIGID_DISK, {"nodes": "11"}, COULOMB, PRESS, SHEAR),
     "elastic disk": scene(ELASTIC_DISK, RIGID_PLANE, {"nodes": "12", "half_angle": "9"}, COULOMB, PRESS, SHEAR),
@@ -459,3 +470,36 @@ CASE: dict[tuple[str, str], Row] = {
     ("output", "stress_at"): real("output", "cylinder", "1e-3", "length"),
     ("output", "checkpoint_minutes"): real("output", "cylinder", "10", "minutes", lower=0.0, upper=1e6),
 }
+#: Layers have the keys of materials of bodies.
+_OF_MATERIALS = (*(key for key in ORTHOTROPIC if key != "shape"), "poisson_ratio", "yield_strength", "compliances", "axis_angle")
+_TOO_DIFFERENT = {"youngs_modulus_1": ("1e100",), "shear_modulus_12": ("1e-100", "1e-15")}
+_COATED = {"cylinder": "coated", "composite": "coated composite", "crystal": "coated crystal"}
+CASE.update(
+    {
+        ("layer", "body"): whole("layer(1)", "coated", "1", 1, 2, needed=": body is missing; it must be a whole number from 1 to 2"),
+        ("layer", "thickness"): positive(
+            "layer(1)", "coated", "0.004", "length", needed=": thickness is missing; it must be a number above 0"
+        ),
+        ("layer", "elasticity"): choice(
+            "layer(1)",
+            "coated",
+            "'isotropic'",
+            "isotropic orthotropic anisotropic",
+            refused=dict.fromkeys(("'orthotropic'", "'anisotropic'"), "has no effect with elasticity="),
+        ),
+        **{
+            ("layer", name): replace(
+                row,
+                place="layer(1)",
+                scene=_COATED[row.scene],
+                refused=row.refused | dict.fromkeys(_TOO_DIFFERENT.get(name, ()), "differ too much"),
+            )
+            for (group, name), row in CASE.items()
+            if group == "body" and row.scene in _COATED and name in _OF_MATERIALS
+        },
+        ("layer", "shear_modulus"): positive("layer(1)", "coated", "0.8", MODULUS, without=("youngs_modulus",)),
+        ("layer", "youngs_modulus"): positive(
+            "layer(1)", "coated", "2.0", MODULUS, needed=": shear_modulus is missing; it must be a number above 0"
+        ),
+    }
+)

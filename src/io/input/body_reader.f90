@@ -7,7 +7,7 @@ module mfv_body_reader
    use mfv_error, only: error_type
    use mfv_key_reader
    use mfv_kinds, only: pi, wp
-   use mfv_layers, only: layer_type
+   use mfv_layers, only: is_moderate, layer_type
    use mfv_material, only: material_type, new_anisotropic_material, new_material, new_orthotropic_material, plane_stress, &
                            shear_modulus_of
    use mfv_matrix_file, only: read_matrix_body
@@ -222,6 +222,9 @@ contains
          layer(i)%thickness = reader%real_value('layer', numbers(i), 'thickness')
          layer(i)%yield_strength = reader%real_value('layer', numbers(i), 'yield_strength')
          call read_material('layer', reader, numbers(i), plane, number == 2, layer(i)%material, error)
+         if (.not. allocated(error) .and. .not. is_moderate(layer(i)%material)) &
+            call reader%complain('layer', numbers(i), 'elasticity', 'the moduli of the layer differ too much for its kernels; '// &
+                                 'they may differ by a factor of about 1e4', error)
          if (allocated(error)) return
       end do
       call body%elasticity%coat(layer, body%rigid)
