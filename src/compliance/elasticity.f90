@@ -113,12 +113,17 @@ contains
       self%material = layer(1)%material
    end subroutine coat
 
-   !> Find the stresses at the surface of layers, for distances up to `reach`, length, unless they are known; none without layers.
-   subroutine find_surface_stress(self, reach)
+   !> Find the stresses at the surface of layers and their interfaces, for distances up to many times `length`, unless they are known;
+   !> none without layers.
+   subroutine find_surface_stress(self, length)
       class(elasticity_type), intent(inout) :: self
-      real(wp), intent(in) :: reach
+      real(wp), intent(in) :: length
+      !> In lengths of the mesh, and in thicknesses of the layers.
+      real(wp), parameter :: distant(2) = [20.0_wp, 10.0_wp]
+      real(wp) :: reach
 
       if (.not. self%is_layered()) return
+      reach = maxval(distant*[length, sum(self%layer%thickness)])
       if (allocated(self%layer_stress)) then
          if (self%layer_stress%reach >= reach) return
          deallocate (self%layer_stress)

@@ -60,7 +60,7 @@ module mfv_layers
       procedure :: stresses
       procedure :: endless_stresses
       procedure :: uniform_stresses
-      procedure :: thickness
+      procedure :: depth_of
       procedure :: nearest_image
       procedure :: slant
       procedure :: wave_layer
@@ -355,12 +355,13 @@ contains
       inverse = reshape([a(2, 2), -a(2, 1), -a(1, 2), a(1, 1)], [2, 2])/(a(1, 1)*a(2, 2) - a(1, 2)*a(2, 1))
    end function inverse
 
-   !> Total thickness of the layers, length.
-   pure real(wp) function thickness(self)
+   !> Depth of the lower side of a layer, length.
+   pure real(wp) function depth_of(self, layer)
       class(layers_type), intent(in) :: self
+      integer, intent(in) :: layer
 
-      thickness = sum(self%layer%thickness)
-   end function thickness
+      depth_of = sum(self%layer(:layer)%thickness)
+   end function depth_of
 
    !> Distance from the surface to the nearest image of a load there, beyond the first layer: what the layers below add is smooth over
    !> it, length.

@@ -190,7 +190,12 @@ contains
       real(wp) :: stress(3)
 
       stress = 0.0_wp
-      if (size(self%level) > 0) stress = self%sum_over(self%table%interface(layer), x)
+      if (size(self%level) == 0) return
+      if (max(abs(x - self%from), abs(x - self%to)) > self%table%reach) then
+         stress = self%stress(x, self%table%layers%depth_of(layer), layer)
+      else
+         stress = self%sum_over(self%table%interface(layer), x)
+      end if
    end function interface_stress
 
    !> The sum over all panels.

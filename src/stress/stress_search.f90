@@ -236,6 +236,10 @@ contains
          places = merged(places, contact(2, :) + steps(i)*depth)
       end do
       places = pack(places, [.true., places(2:) - places(:size(places) - 1) > visible*depth])
+      ! Where the stresses are known at once; there is nothing beyond.
+      associate (farthest => interior%layers%table%reach - 2.0_wp*interior%half_width())
+         places = pack(places, abs(places - interior%middle()) <= farthest)
+      end associate
    end function places_at_depth
 
    !> Candidate points for the largest tension, ascending: zone edges, some points between them, kinks of the shear, and points

@@ -283,8 +283,6 @@ contains
       real(wp), intent(in) :: interval
       class(compliance_type), allocatable :: lower, upper
       real(wp) :: common_radius, started
-      !> Distances over which stresses of layers are known at once, in lengths of the mesh.
-      real(wp), parameter :: distant = 20.0_wp
 
       started = seconds_now()
       associate (scene => self%scene)
@@ -292,11 +290,11 @@ contains
          call scene%lower%make_compliance(nodes, interval, scene%coupling, self%tangential, common_radius, lower, scene%mesh%ends)
          call scene%upper%make_compliance(nodes, interval, scene%coupling, self%tangential, common_radius, upper, scene%mesh%ends)
       end associate
-      associate (scene => self%scene, reach => distant*nodes*interval)
-         call scene%lower%elasticity%find_surface_stress(reach)
-         call scene%upper%elasticity%find_surface_stress(reach)
-         if (scene%lower%has_strength()) call scene%lower%elasticity%prepare_stress(nodes*interval)
-         if (scene%upper%has_strength()) call scene%upper%elasticity%prepare_stress(nodes*interval)
+      associate (scene => self%scene, length => nodes*interval)
+         call scene%lower%elasticity%find_surface_stress(length)
+         call scene%upper%elasticity%find_surface_stress(length)
+         if (scene%lower%has_strength()) call scene%lower%elasticity%prepare_stress(length)
+         if (scene%upper%has_strength()) call scene%upper%elasticity%prepare_stress(length)
       end associate
       call new_body_pair(lower, upper, self%compliance)
       self%assembly_seconds = self%assembly_seconds + seconds_now() - started
