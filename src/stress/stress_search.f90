@@ -208,9 +208,11 @@ contains
       von_mises = -1.0_wp
       if (interior%body%has_strength()) von_mises = 0.0_wp
       if (.not. interior%half_width() > 0.0_wp) return
-      places = interior%zone_edges(most_between=across)
+      ! Layers are stretched beside the contact, too.
+      places = candidates(interior)
       tension = max(tension, maxval([(interior%surface_stress(places(i)), i=1, size(places))]))
       if (.not. interior%body%has_strength()) return
+      places = interior%zone_edges(most_between=across)
       associate (elasticity => interior%body%elasticity)
          below = [0.0_wp, interior%half_width()*depths, (elasticity%depth_of(i), i=1, size(elasticity%layer))]
       end associate
