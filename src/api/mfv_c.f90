@@ -868,10 +868,12 @@ contains
    !> The requested stresses of a body: at points, the largest von Mises stress and the largest tension. MFV_BAD_ARGUMENT.
    integer(c_int) function answered(self, interior, count, x, y, stresses, place, tension) result(status)
       type(handle_type), intent(inout) :: self
-      type(interior_type), intent(in) :: interior
+      type(interior_type), intent(inout) :: interior
       integer(c_size_t), intent(in) :: count
       real(c_double), intent(in), optional :: x(count), y(count)
       real(c_double), intent(inout), optional :: stresses(stress_count, count), place(3), tension(3)
+      !> Points at which stresses in layers are found one by one.
+      integer(c_size_t), parameter :: few = 20
       integer(c_size_t) :: i
 
       status = MFV_COMPLETE
@@ -880,10 +882,12 @@ contains
          if (status /= MFV_COMPLETE) return
          status = expected(self, is_size(count), 'count is too large: there must be that many points')
          if (status /= MFV_COMPLETE) return
+         if (count > few) call interior%prepare(maxval(abs(y), mask=abs(y) <= huge(1.0_wp)))
          do i = 1, count
             stresses(:, i) = interior%all_stresses(x(i), y(i))
          end do
       end if
+      if (present(place)) call interior%prepare()
       if (present(place)) place = place_of(largest_von_mises(interior))
       if (present(tension)) tension = place_of(largest_tension(interior))
    end function answered

@@ -95,6 +95,7 @@ contains
       available = has_interior(body)
       if (.not. available) return
       self%body = body
+      call self%body%elasticity%find_surface_stress(arc(size(arc)) - arc(1) + width(1))
       self%side = merge(-1.0_wp, 1.0_wp, upper)
       if (body%is_hole()) self%outward = -1.0_wp
       self%peak = maxval(pressure)
@@ -124,8 +125,8 @@ contains
                   self%half_plane = new_half_plane_load(material, e%from, e%to, e%first, e%last)
                end if
             end associate
-            if (allocated(body%elasticity%layer_stress)) &
-               self%layers = new_layered_load(body%elasticity%layer_stress, self%length*e%from, self%length*e%to, e%first, e%last)
+            if (body%elasticity%is_layered()) self%layers = &
+               new_layered_load(self%body%elasticity%layer_stress, self%length*e%from, self%length*e%to, e%first, e%last)
          end if
       end associate
    end subroutine new_interior
@@ -278,12 +279,20 @@ contains
       tractions = [values(stress_yy), self%side*values(stress_xy)]
    end function interface_tractions
 
-   !> Make stresses in layers quick down to the depth `deepest`, length.
+   !> Make stresses in layers quick down to the depth of the search for the largest ones, and down to the depth `deepest`, length.
    subroutine prepare(self, deepest)
       class(interior_type), intent(inout) :: self
-      real(wp), intent(in) :: deepest
+      real(wp), intent(in), optional :: deepest
+      !> Deeper ones are found one by one; over the thickness of the layers and the width of the contact.
+      real(wp), parameter :: most = 50.0_wp
+      real(wp) :: depth
 
-      if (self%body%elasticity%is_layered()) call self%layers%table%prepare(deepest)
+      if (.not. self%body%elasticity%is_layered()) return
+      depth = 2.0_wp*self%half_width()
+      if (present(deepest)) depth = max(depth, deepest)
+      associate (thickness => self%body%elasticity%depth_of(size(self%body%elasticity%layer)))
+         call self%layers%table%prepare(min(depth, most*(thickness + 2.0_wp*self%half_width())))
+      end associate
    end subroutine prepare
 
    !> What a von Mises stress at a depth, length, counts in the search for the largest one: of layers with different yield strengths

@@ -20,7 +20,7 @@ module mfv_interior_layers
    end type level_type
 
    type :: layered_load_type
-      type(layer_stress_type) :: table
+      type(layer_stress_type), allocatable :: table
       real(wp) :: from = 0.0_wp, to = 0.0_wp
       type(level_type), allocatable :: level(:)
    contains
@@ -33,14 +33,15 @@ module mfv_interior_layers
 contains
 
    !> Layers under p + i tau, force/length^2, linear from `first` to `last` in elements from `from` to `to`, lengths; shapes (elements).
+   !> `table` is moved into the result.
    type(layered_load_type) function new_layered_load(table, from, to, first, last) result(self)
-      type(layer_stress_type), intent(in) :: table
+      type(layer_stress_type), allocatable, intent(inout) :: table
       real(wp), intent(in) :: from(:), to(:)
       complex(wp), intent(in) :: first(:), last(:)
       real(wp) :: width, place(element_points), weight(element_points)
       integer :: i, j, levels, panels
 
-      self%table = table
+      call move_alloc(table, self%table)
       if (size(from) == 0) then
          allocate (self%level(0))
          return
@@ -48,7 +49,7 @@ contains
       self%from = minval(from)
       self%to = maxval(to)
       ! Over the least length that the functions are smooth at any depth.
-      width = table%scale_at(table%layers%layer(1)%thickness, 1)
+      width = self%table%scale_at(self%table%layers%layer(1)%thickness, 1)
       panels = max(ceiling((self%to - self%from)/width), 1)
       width = (self%to - self%from)/panels
       levels = 1

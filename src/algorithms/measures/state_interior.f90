@@ -102,7 +102,9 @@ contains
 
       ! The value is flat at its maximum: few elements suffice.
       call state_interior(model, state, upper, interior, available, fewest_elements=60)
-      if (available) largest = largest_von_mises(interior)
+      if (.not. available) return
+      call interior%prepare()
+      largest = largest_von_mises(interior)
    end subroutine find_largest_von_mises
 
    !> Edges of contact and stick zones, arc lengths from the origin of x, at the first and last node of each zone; NaN

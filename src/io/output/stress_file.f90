@@ -161,11 +161,16 @@ contains
    !> Stresses on the grid or at the points, and the largest von Mises stress.
    subroutine compute(request, interior, result)
       type(stress_request_type), intent(in) :: request
-      type(interior_type), intent(in) :: interior
+      type(interior_type), intent(inout) :: interior
       type(stress_result_type), intent(inout) :: result
       real(wp) :: sign
       integer :: i, j, k
 
+      if (allocated(request%x)) then
+         call interior%prepare(maxval(abs(request%y)))
+      else
+         call interior%prepare(result%half_width*request%depth)
+      end if
       result%largest = largest_von_mises(interior)
       result%tension = largest_tension(interior)
       if (allocated(request%x)) then
