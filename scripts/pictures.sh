@@ -61,6 +61,7 @@ figure.savefig(f"{sys.argv[2]}/fatigue_maps.png", dpi=120)
 END
 PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so "$venv/bin/python" "$root/examples/wear.py" "$pictures/wear.png" "$pictures/wear.gif"
 PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so "$venv/bin/python" "$root/examples/composite.py" "$pictures/composite.png"
+PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so "$venv/bin/python" "$root/examples/coating.py" "$pictures/coating.png"
 PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so "$venv/bin/python" "$root/examples/waves.py" "$pictures/waves.png"
 # Figures of the dissertation, into examples/dissertation/pictures.
 PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$root/build/release/lib/libmfv.so "$venv/bin/python" "$root/examples/dissertation/draw.py"

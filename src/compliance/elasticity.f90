@@ -57,7 +57,7 @@ module mfv_elasticity
       procedure :: depth_of
       procedure :: layer_at
       procedure :: near_field
-      procedure :: modulus_over
+      procedure :: near_field_over
       procedure :: strain_by_bulk_stress
       procedure :: make_compliance
    end type elasticity_type
@@ -168,22 +168,19 @@ contains
       end do
    end function layer_at
 
-   !> Modulus under pressures that vary over a length: 1/A of the near field or, with layers, that of a wave of this length over 2
-   !> pi, force/length^2; 0 without a material.
-   pure real(wp) function modulus_over(self, length) result(modulus)
+   !> The constants for tractions that vary over a length: of the near field or, with layers, of a wave of this length over 2 pi.
+   pure type(near_field_type) function near_field_over(self, length) result(constants)
       class(elasticity_type), intent(in) :: self
       real(wp), intent(in) :: length
-      type(near_field_type) :: constants
       type(layers_type) :: layers
       complex(wp) :: z(2, 2)
 
       constants = self%near_field()
-      modulus = constants%modulus()
       if (.not. self%is_layered()) return
       layers = self%layers()
       z = layers%compliance(cmplx(1.0_wp/length, 0.0_wp, wp))
-      modulus = 1.0_wp/real(z(2, 2), wp)
-   end function modulus_over
+      constants = near_field_type(real(z(2, 2), wp), real(z(1, 1), wp), -aimag(z(1, 2)), -real(z(1, 2), wp))
+   end function near_field_over
 
    !> Constants of its near field, 0 without a material.
    elemental type(near_field_type) function near_field(self) result(constants)

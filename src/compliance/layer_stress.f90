@@ -96,18 +96,16 @@ contains
       class(layer_stress_type), intent(in) :: self
       real(wp), intent(in) :: depth
       integer, intent(in) :: number
-      type(layers_type) :: layers
-      real(wp) :: top
 
-      layers = self%layers
-      if (number == 1) then
-         scale = layers%nearest_image() - layers%layer(1)%decay*depth
-         return
-      end if
-      top = sum(layers%layer(:number - 1)%thickness)
-      scale = sum(layers%layer(:number - 1)%decay*layers%layer(:number - 1)%thickness)
-      scale = scale + (depth - top)*merge(layers%base%decay, layers%layer(min(number, size(layers%layer)))%decay, &
-                                          number > size(layers%layer))
+      associate (layers => self%layers)
+         if (number == 1) then
+            scale = layers%nearest_image() - layers%layer(1)%decay*depth
+            return
+         end if
+         scale = sum(layers%layer(:number - 1)%decay*layers%layer(:number - 1)%thickness)
+         scale = scale + (depth - layers%depth_of(number - 1))*merge(layers%base%decay, &
+                                           layers%layer(min(number, size(layers%layer)))%decay, number > size(layers%layer))
+      end associate
    end function scale_at
 
    !> Make blocks for all depths down to `deepest`, length.
@@ -255,7 +253,9 @@ contains
       complex(wp), allocatable :: k(:), weight(:), even(:, :), odd(:, :), waves(:, :)
       real(wp), allocatable :: ends(:), x(:), values(:, :, :), mean(:)
       real(wp) :: turn(terms, terms)
-      integer :: i, j, m, count, n
+      !> Waves at once.
+      integer, parameter :: at_once = 1000
+      integer :: i, j, m, count, n, first, last
 
       scale = max(scale, thinnest*max(reach, self%period))
       ends = ends_of(scale, self%layers%slant(), merge(0.5_wp*self%period, reach, self%period > 0.0_wp))
@@ -276,18 +276,17 @@ contains
       turn = reshape([((cos(pi*(i - 1)*(j - 0.5_wp)/terms), i=1, terms), j=1, terms)], [terms, terms])
       n = size(ends) - 1
       x = [((ends(i) + 0.5_wp*(ends(i + 1) - ends(i))*(1.0_wp + turn(2, j)), j=1, terms), i=1, n)]
-      allocate (waves(size(x), size(k)))
-      do j = 1, size(k)
-         do i = 1, size(x)
-            waves(i, j) = 0.0_wp
-            if (aimag(k(j))*x(i) < last_exponent) waves(i, j) = exp(cmplx(-aimag(k(j))*x(i), real(k(j), wp)*x(i), wp))
-         end do
-      end do
       mean = [(0.0_wp, i=1, 3*loads)]
       if (self%period > 0.0_wp .and. number > 1) mean = pack(self%layers%uniform_stresses(number)/self%period, .true.)
-      allocate (values(size(x), 2, count))
-      values(:, 1, :) = matmul(real(waves, wp), real(even, wp)) - matmul(aimag(waves), aimag(even))
-      values(:, 2, :) = -matmul(real(waves, wp), aimag(odd)) - matmul(aimag(waves), real(odd, wp))
+      allocate (values(size(x), 2, count), source=0.0_wp)
+      do first = 1, size(k), at_once
+         last = min(first + at_once - 1, size(k))
+         waves = waves_of(k(first:last), x)
+         values(:, 1, :) = values(:, 1, :) + matmul(real(waves, wp), real(even(first:last, :), wp)) &
+                           - matmul(aimag(waves), aimag(even(first:last, :)))
+         values(:, 2, :) = values(:, 2, :) - matmul(real(waves, wp), aimag(odd(first:last, :))) &
+                           - matmul(aimag(waves), real(odd(first:last, :), wp))
+      end do
       do m = 1, size(depths)
          rows(m)%layer = number
          rows(m)%scale = scale
@@ -304,6 +303,21 @@ contains
          end do
       end do
    end subroutine make_rows
+
+   !> exp(i k x), shape (x, k); 0 where it has decayed.
+   pure function waves_of(k, x) result(waves)
+      complex(wp), intent(in) :: k(:)
+      real(wp), intent(in) :: x(:)
+      complex(wp) :: waves(size(x), size(k))
+      integer :: i, j
+
+      waves = 0.0_wp
+      do j = 1, size(k)
+         do i = 1, size(x)
+            if (aimag(k(j))*x(i) < last_exponent) waves(i, j) = exp(cmplx(-aimag(k(j))*x(i), real(k(j), wp)*x(i), wp))
+         end do
+      end do
+   end function waves_of
 
    !> Ends of the intervals of x up to `farthest`, lengths; as short as near the load also where waves are shifted to.
    pure function ends_of(scale, slant, farthest) result(ends)

@@ -187,6 +187,12 @@ contains
       complex(wp) :: step(4, 4), tractions(2, 2)
       integer :: i, steps
 
+      ! The lower side is not seen, and its tractions vanish.
+      if (real(way, wp)*layer%decay > merge(2.0_wp, 1.0_wp, present(down))*deep) then
+         z = layer%endless
+         if (present(down)) down = 0.0_wp
+         return
+      end if
       steps = max(ceiling(abs(way)*layer%norm), 1)
       step = exponential(layer, way/steps)
       do i = 1, steps

@@ -86,8 +86,10 @@ contains
          call add_interval(self, spectrum, self%ends(size(self%ends)), to, largest, most_halvings)
          to = 2.0_wp*to
       end do
-      if (.not. period > 0.0_wp) &
-         self%error = difference(self, spectrum_of(layers, datum, max(farthest, datum), self%image, 0.6_wp), largest)
+      if (.not. period > 0.0_wp) then
+         spectrum = spectrum_of(layers, datum, max(farthest, datum), self%image, 0.6_wp)
+         self%error = max(self%error, difference(self, spectrum, largest))
+      end if
       if (self%image > layers%nearest_image() .or. last_exponent/self%image*period > 2.0_wp*pi*most_modes) self%error = 1.0_wp
    end function new_smooth_kernel
 
@@ -215,7 +217,7 @@ contains
       real(wp), intent(in) :: from, to, largest
       integer, intent(in) :: halvings
       real(wp), parameter :: tolerance = 16.0_wp*epsilon(1.0_wp)
-      real(wp) :: values(terms, smooth_kernels), turn(terms, terms)
+      real(wp) :: values(terms, smooth_kernels), turn(terms, terms), tail
       real(wp), allocatable :: longer(:, :, :)
       integer :: i, j, n
 
@@ -225,11 +227,13 @@ contains
       end do
       values = matmul(turn, values)*(2.0_wp/terms)
       values(1, :) = 0.5_wp*values(1, :)
-      if (halvings > 0 .and. maxval(abs(values(terms - 1:, :))) > tolerance*max(largest, maxval(abs(values)))) then
+      tail = maxval(abs(values(terms - 1:, :)))/max(largest, maxval(abs(values)))
+      if (halvings > 0 .and. tail > tolerance) then
          call add_interval(self, spectrum, from, 0.5_wp*(from + to), largest, halvings - 1)
          call add_interval(self, spectrum, 0.5_wp*(from + to), to, largest, halvings - 1)
          return
       end if
+      self%error = max(self%error, tail)
       n = size(self%ends)
       allocate (longer(terms, smooth_kernels, n))
       longer(:, :, :n - 1) = self%series

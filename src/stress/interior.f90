@@ -95,7 +95,9 @@ contains
       available = has_interior(body)
       if (.not. available) return
       self%body = body
-      call self%body%elasticity%find_surface_stress(arc(size(arc)) - arc(1) + width(1))
+      ! That of a scene without a model.
+      if (.not. allocated(self%body%elasticity%layer_stress)) &
+         call self%body%elasticity%find_surface_stress(arc(size(arc)) - arc(1) + width(1))
       self%side = merge(-1.0_wp, 1.0_wp, upper)
       if (body%is_hole()) self%outward = -1.0_wp
       self%peak = maxval(pressure)

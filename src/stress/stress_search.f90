@@ -36,16 +36,20 @@ contains
       type(interior_type), intent(in) :: interior
       integer, parameter :: starts = 6
       real(wp), allocatable :: place(:, :), step(:, :), found(:)
-      real(wp) :: length, reach, arc, value
+      real(wp) :: length, reach, arc, value, weight
       type(search_type) :: search
       integer :: best, start
 
-      largest%value = von_mises_stress(interior%remote_stress(1))*interior%weight_at(0.0_wp)
-      if (interior%body%elasticity%is_layered()) largest%value = largest_remote(interior)
+      largest%value = von_mises_stress(interior%remote_stress(1))
+      weight = 1.0_wp
+      if (interior%body%elasticity%is_layered()) call find_largest_remote(interior, largest%value, weight)
       if (largest%value > 0.0_wp) largest%x = ieee_value(1.0_wp, ieee_quiet_nan)
       largest%y = largest%x
       length = 2.0_wp*interior%half_width()
-      if (.not. length > 0.0_wp) return
+      if (.not. length > 0.0_wp) then
+         if (weight > 0.0_wp) largest%value = largest%value/weight
+         return
+      end if
       if (interior%elements%sharp) then
          largest%value = ieee_value(1.0_wp, ieee_quiet_nan)
          largest%x = largest%value
@@ -67,22 +71,31 @@ contains
       call refine_on_line(interior, interior%knots(), surface_von_mises, arc, value)
       call keep_larger(interior, largest, arc, 0.0_wp)
       ! Of the layer in which it is the largest part of the yield strength.
-      if (ieee_is_finite(largest%y)) largest%value = largest%value/interior%weight_at(abs(largest%y))
+      if (ieee_is_finite(largest%y)) weight = interior%weight_at(abs(largest%y))
+      if (weight > 0.0_wp) largest%value = largest%value/weight
    end function largest_von_mises
 
-   !> The largest von Mises stress far from the contact, weighted as in the search, of all layers, force/length^2.
-   real(wp) function largest_remote(interior) result(largest)
+   !> The largest von Mises stress far from the contact of all layers, force/length^2, times its `weight` as in the search.
+   subroutine find_largest_remote(interior, largest, weight)
       type(interior_type), intent(in) :: interior
+      real(wp), intent(out) :: largest, weight
+      real(wp) :: value, depth, here
       integer :: i
 
+      largest = 0.0_wp
+      weight = 1.0_wp
       associate (elasticity => interior%body%elasticity)
-         largest = von_mises_stress(interior%remote_stress(size(elasticity%layer) + 1)) &
-                   *interior%weight_at(2.0_wp*elasticity%depth_of(size(elasticity%layer)))
-         do i = 1, size(elasticity%layer)
-            largest = max(largest, von_mises_stress(interior%remote_stress(i))*interior%weight_at(elasticity%depth_of(i)))
+         do i = 1, size(elasticity%layer) + 1
+            depth = 2.0_wp*elasticity%depth_of(size(elasticity%layer))
+            if (i <= size(elasticity%layer)) depth = elasticity%depth_of(i)
+            here = interior%weight_at(depth)
+            value = von_mises_stress(interior%remote_stress(i))*here
+            if (.not. value > largest) cycle
+            largest = value
+            weight = here
          end do
       end associate
-   end function largest_remote
+   end subroutine find_largest_remote
 
    !> Starting points of the search below a contact of the length `length`, to the depth `reach`: arc lengths and depths `place` and
    !> first steps `step`, shapes (2, points), with the von Mises stresses `found` there. They are the local maxima of a grid; and,

@@ -8,7 +8,6 @@ import math
 import os
 from typing import Any
 
-import h5py
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -16,11 +15,10 @@ from scipy.linalg import expm
 from test_anisotropic import near_field, random_material, reduced, steps, turned
 
 import mfv
-from mfv import Body, Friction, Layer, Mesh, Output, Scene, Solver, Step
+from mfv import Body, Friction, Layer, Mesh, Scene, Step
 
 Numbers = NDArray[np.float64]
 ALLOY = {"youngs_modulus": 70e3, "poisson_ratio": 0.33}
-SOFT = {"youngs_modulus": 4e3, "poisson_ratio": 0.42}
 
 
 @dataclasses.dataclass
@@ -220,3 +218,133 @@ def contact_width(compliance: Numbers, x: Numbers, radius: float, force: float) 
         if forces[0] < 0:
             return float(abs(x[inside][0]))
     return float(x[-1])
+
+
+@pytest.mark.parametrize("ratio, expected", [(5, -3.3e-3), (20, -1.9e-4)])
+def test_a_thin_compressible_strip_is_winklers_foundation(ratio: float, expected: float) -> None:
+    """P = 2 K a^3/(3 R t), K = 2 G (1 - nu)/(1 - 2 nu): the peak pressure differs by (t/a)^2."""
+    shear, nu, t, radius = 10.0, 0.3, 1.0, 1000.0
+    modulus, a = 2 * shear * (1 - nu) / (1 - 2 * nu), ratio * t
+    strip = Body.half_plane(rigid=True, layers=[Layer(thickness=t, shear_modulus=shear, poisson_ratio=nu)])
+    press = [Step(normal_force=2 * modulus * a**3 / (3 * radius * t))]
+    mesh = Mesh(nodes=401, half_width=1.1 * a, gap="parabolic")
+    result = Scene(strip, Body.disk(radius, rigid=True), mesh=mesh, steps=press).run(check=True)
+    peak = modulus * a**2 / (2 * radius * t)
+    assert result.observables.peak_pressure / peak - 1 == pytest.approx(expected, rel=0.03)
+    assert "lower_datum" not in result.scene
+
+
+def test_a_thin_incompressible_strip_follows_johnson() -> None:
+    """P = 2 E a^5/(45 R t^3), p0 = E a^4/(24 R t^3): second order in t/a (Johnson 1985, section 5.8)."""
+    modulus, t, radius, errors = 10.0, 1.0, 1000.0, []
+    for a in (10.0, 20.0):
+        strip = Body.half_plane(rigid=True, layers=[Layer(thickness=t, youngs_modulus=modulus, poisson_ratio=0.5)])
+        press = [Step(normal_force=2 * modulus * a**5 / (45 * radius * t**3))]
+        mesh = Mesh(nodes=401, half_width=1.2 * a, gap="parabolic")
+        result = Scene(strip, Body.disk(radius, rigid=True), mesh=mesh, steps=press).run(check=True)
+        errors.append(float(result.observables.peak_pressure) / (modulus * a**4 / (24 * radius * t**3)) - 1)
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.1)
+    assert abs(errors[1]) < 0.01
+
+
+#: By finite elements (tests/finite_elements/coated_cylinder.py): coating E, nu, t; half-width, stick zone, peak pressure, centre of the
+#: pressure, and sigma_yy and sigma_xy at the interface at x = -0.8, 0, 0.8.
+BY_ELEMENTS = {
+    "stiff": (
+        400.0, 0.25, 0.5, (0.7111, 5e-4), (-0.598, 2e-3), (-0.050, 3e-3), (0.0897, 4e-4), (-0.057458, 8e-6),
+        (-0.023770, -0.050926, -0.023658), (-0.014306, 0.003657, 0.018437),
+    ),
+    "soft": (
+        20.0, 0.45, 0.3, (1.202, 1.5e-3), (-0.839, 7e-3), (0.789, 3e-3), (0.050566, 2e-6), (-0.015576, 8e-6),
+        (-0.030415, -0.048267, -0.030459), (-0.004861, 0.008142, 0.015866),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("coating", BY_ELEMENTS)
+def test_a_coated_cylinder_agrees_with_finite_elements(coating: str) -> None:
+    """Pressed with friction and full coupling, then sheared."""
+    modulus, nu, t, half_width, left, right, peak, centre, normal, shear = BY_ELEMENTS[coating]
+    force = 0.0863074905
+    body = Body.half_plane(
+        youngs_modulus=100.0, poisson_ratio=0.3, layers=[Layer(thickness=t, youngs_modulus=modulus, poisson_ratio=nu)]
+    )
+    result = Scene(
+        body,
+        Body.disk(1000.0, rigid=True),
+        friction=Friction.coulomb(0.5),
+        mesh=Mesh(nodes=401, half_width=1.6 if coating == "soft" else 1.0, gap="parabolic"),
+        steps=[Step(normal_force=force), Step(tangential_force=0.25 * force)],
+    ).run(check=True)
+    found = result.summary
+    assert result.observables.contact_half_width == pytest.approx(half_width[0], abs=half_width[1])
+    assert found.stick_left == pytest.approx(left[0], abs=left[1])
+    assert found.stick_right == pytest.approx(right[0], abs=right[1])
+    assert result.observables.peak_pressure == pytest.approx(peak[0], abs=peak[1])
+    middle = np.sum(result.state.pressure * result.mesh.x) / np.sum(result.state.pressure)
+    assert middle == pytest.approx(centre[0], abs=centre[1])
+    at = mfv.stress.stress(result, [-0.8, 0.0, 0.8], np.full(3, -t))
+    np.testing.assert_allclose(at["sigma_yy"], normal, rtol=0, atol=2e-6)
+    np.testing.assert_allclose(at["sigma_xy"], shear, rtol=0, atol=2e-6)
+
+
+def rubbed(lower: Body, **scene: Any) -> mfv.Result:
+    steps_of = scene.pop("steps", [Step(normal_force=50), Step(force_ratio=0.6), Step(force_ratio=-0.6, cycles=1)])
+    return Scene(
+        lower, Body.disk(10.0, rigid=True), friction=Friction.coulomb(0.3), steps=steps_of, **scene
+    ).run(check=True)  # fmt: skip
+
+
+def test_a_layer_of_the_body_itself_changes_nothing() -> None:
+    """All fields, observables and stresses are those without it, also in cycles and with a bulk stress."""
+    loads = [Step(normal_force=50), Step(force_ratio=0.5, lower_bulk_stress=20), Step(force_ratio=-0.5, lower_bulk_stress=-20)]
+    bare, coated = (
+        rubbed(Body.half_plane(**ALLOY, layers=layers), steps=loads)
+        for layers in (None, [Layer(thickness=0.03, **ALLOY), Layer(thickness=0.2, **ALLOY)])
+    )
+    peak = np.max(bare.state.pressure)
+    for name in ("pressure", "shear"):
+        np.testing.assert_allclose(getattr(coated.state, name), getattr(bare.state, name), rtol=0, atol=1e-10 * peak)
+    for name in bare.observables:
+        assert coated.observables[name] == pytest.approx(bare.observables[name], rel=1e-7, abs=1e-9 * peak), name
+    x, y = np.array([-0.1, 0.05, 0.0, 0.3]), -np.array([0.01, 0.05, 0.4, 0.03])
+    one, other = (mfv.stress.stress(result, x, y) for result in (bare, coated))
+    for name in ("sigma_xx", "sigma_yy", "sigma_xy", "sigma_zz"):
+        np.testing.assert_allclose(other[name], one[name], rtol=0, atol=1e-9 * peak, err_msg=name)
+
+
+def test_interfaces_are_in_balance_and_layers_have_their_own_bulk_stress() -> None:
+    """Normal and shear traction are continuous, extension along x is too; far away each layer has the stress of the common strain."""
+    coating = Layer(thickness=0.05, youngs_modulus=200e3, poisson_ratio=0.2)
+    loads = [Step(normal_force=50), Step(force_ratio=0.6, lower_bulk_stress=30)]
+    result = rubbed(Body.half_plane(**ALLOY, layers=[coating]), steps=loads)
+    x = np.array([-0.11, -0.05, 0.0, 0.12])
+    above, below = (mfv.stress.stress(result, x, np.full(4, -0.05 * (1 + side))) for side in (0.0, 1e-9))
+    for name in ("sigma_yy", "sigma_xy"):
+        np.testing.assert_allclose(above[name], below[name], rtol=0, atol=1e-5)
+    strains = [
+        ((1 - nu**2) * at["sigma_xx"] - nu * (1 + nu) * at["sigma_yy"]) / e
+        for at, e, nu in ((above, 200e3, 0.2), (below, 70e3, 0.33))
+    ]
+    np.testing.assert_allclose(*strains, rtol=0, atol=1e-9)
+    far = mfv.stress.stress(result, [1e5, 1e5], [-0.01, -0.5])
+    s11 = [(1 - 0.33**2) / 70e3, (1 - 0.2**2) / 200e3]
+    np.testing.assert_allclose(far["sigma_xx"], [30 * s11[0] / s11[1], 30], rtol=1e-4)
+    # The largest tractions that the summary names are those along the interface.
+    seen = result.observables
+    line = np.linspace(-1, 1, 4001)
+    along = mfv.stress.stress(result, line, np.full_like(line, -0.05))
+    assert seen.largest_lower_interface_shear == pytest.approx(np.max(np.abs(along["sigma_xy"])), rel=1e-5)
+    assert seen.largest_lower_interface_tension == pytest.approx(np.max(along["sigma_yy"]), rel=1e-4)
+
+
+def test_yield_is_that_of_the_layer() -> None:
+    """The warning compares the stress in each layer with its own strength; without a strength a layer does not count."""
+    coat: dict[str, Any] = {"thickness": 0.05, "youngs_modulus": 200e3, "poisson_ratio": 0.2}
+    strong = rubbed(Body.half_plane(**ALLOY, yield_strength=1e3, layers=[Layer(**coat, yield_strength=1e4)]))
+    weak = rubbed(Body.half_plane(**ALLOY, yield_strength=1e3, layers=[Layer(**coat, yield_strength=100.0)]))
+    base = rubbed(Body.half_plane(**ALLOY, yield_strength=10.0, layers=[Layer(**coat)]))
+    assert not any("yield" in line for line in strong.attributes.get("warnings", "").splitlines())
+    assert any("exceeds its yield_strength 100 in layer 1" in line for line in weak.attributes.get("warnings", "").splitlines())
+    assert any("exceeds its yield_strength 10 below the layers" in line for line in base.attributes.get("warnings", "").splitlines())
+    assert weak.observables.largest_lower_von_mises_y > -0.05 > base.observables.largest_lower_von_mises_y

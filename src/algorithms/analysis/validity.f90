@@ -4,8 +4,10 @@ module mfv_validity
    use mfv_body, only: body_type
    use mfv_cycle, only: cycle_type
    use mfv_kinds, only: pi, wp
+   use mfv_layers, only: layers_type
    use mfv_load_extremes, only: most_rows
    use mfv_motions, only: motion_approach, motion_shift, motion_rotation, control_displacement
+   use mfv_near_field, only: near_field_type
    use mfv_node_status, only: in_contact
    use mfv_resolution, only: find_unresolved, poorest_patch, unresolved_type
    use mfv_scene, only: most_of_datum, scene_type
@@ -60,6 +62,8 @@ contains
       call check_order(simulation%contact%model%scene%lower, warnings)
       call check_rotation(simulation, warnings)
       call check_wear(simulation, warnings)
+      call check_layers(simulation, 'lower', simulation%contact%model%scene%lower, warnings)
+      call check_layers(simulation, 'upper', simulation%contact%model%scene%upper, warnings)
       call check_slide(simulation, simulation%contact%model%scene, warnings)
       if (simulation%cycle_count > 0) call check_drift(simulation%cycles(simulation%cycle_count), warnings)
       largest = simulation%contact%certificate%largest()
@@ -104,11 +108,13 @@ contains
                                  'contact_length, approach, shift, stiffnesses, dissipation and stresses are off '// &
                                  'by at least that much; check the units of radius, moduli and forces'
       real(wp) :: strain, approach, modulus, thickness
+      type(near_field_type) :: over_width
 
       associate (state => simulation%contact%state, model => simulation%contact%model)
          if (state%contact_nodes() == 0 .or. .not. scene%modulus() > 0.0_wp) return
          ! Layers may be softer than what is below them, or stiffer.
-         modulus = min(scene%modulus(), scene%modulus_over(sum(model%width, mask=in_contact(state%status))))
+         over_width = scene%near_field_over(sum(model%width, mask=in_contact(state%status)))
+         modulus = min(scene%modulus(), over_width%modulus())
          strain = sum(state%fields%pressure*model%width)/sum(model%width, mask=in_contact(state%status))/(2.0_wp*modulus)
          approach = 0.0_wp
          thickness = scene%compressed_thickness()
@@ -198,6 +204,30 @@ contains
       end associate
    end subroutine check_wear
 
+   !> Layers that the mesh does not see, or that are worn through.
+   subroutine check_layers(simulation, name, body, warnings)
+      type(simulation_type), intent(in) :: simulation
+      character(*), intent(in) :: name
+      type(body_type), intent(in) :: body
+      type(string_type), allocatable, intent(inout) :: warnings(:)
+      !> Of the shear compliance of a strip that is nearly incompressible; of the thickness, for an interval and for the worn depth.
+      real(wp), parameter :: incompressible = 0.1_wp, longest = 0.5_wp, deepest = 0.1_wp
+      type(layers_type) :: layers
+
+      if (.not. body%elasticity%is_layered()) return
+      associate (model => simulation%contact%model, elasticity => body%elasticity, state => simulation%contact%state)
+         layers = elasticity%layers()
+         if (layers%rigid_base .and. layers%uniform(2, 2) < incompressible*layers%uniform(1, 1) .and. &
+             model%interval() > longest*elasticity%depth_of(size(elasticity%layer))) &
+            call add_text(warnings, 'the layers of the '//name//' body are nearly incompressible and thinner than two '// &
+                          'intervals of the mesh, which does not resolve how they are squeezed out: half-width, '// &
+                          'approach and tractions may be wrong; use more nodes')
+         if (model%scene%wear%acts() .and. maxval(state%worn) > deepest*elasticity%layer(1)%thickness) &
+            call add_text(warnings, 'wear_depth is '//to_text(100.0_wp*maxval(state%worn)/elasticity%layer(1)%thickness, 2)// &
+                          ' % of the first layer of the '//name//' body, whose thickness does not change in the model')
+      end associate
+   end subroutine check_layers
+
    !> Rotation is first order: exact for rolling parabolas, otherwise with errors that grow with the rolled distance.
    subroutine check_rotation(simulation, warnings)
       type(simulation_type), intent(in) :: simulation
@@ -284,14 +314,14 @@ contains
       logical :: available
       integer :: i, last, mark
 
-      if (.not. body%yield_strength > 0.0_wp) return
+      if (.not. body%has_strength()) return
       last = 0
       do i = 1, most_rows
          mark = mark_of(mark_yield, merge(2, 1, upper), i)
          if (simulation%marks(mark)%step == 0) cycle
          call find_largest_von_mises(simulation%contact%model, simulation%padded(simulation%marks(mark)), upper, other, available)
          if (.not. available) return
-         if (last > 0 .and. other%value <= largest%value) cycle
+         if (last > 0 .and. other%value*strength_at(largest) <= largest%value*strength_at(other)) cycle
          largest = other
          last = mark
          if (.not. ieee_is_finite(largest%value)) exit
@@ -300,15 +330,35 @@ contains
       if (.not. ieee_is_finite(largest%value)) then
          call add_text(warnings, 'the '//merge('upper', 'lower', upper)//' body yields under any load: its stresses are '// &
                        'unbounded at a sharp corner; they are bounded with rounded edges')
-      else if (largest%value > body%yield_strength) then
+      else if (largest%value > strength_at(largest)) then
          associate (where_it_is => simulation%marks(last))
             call add_text(warnings, 'the largest von Mises stress of the '//merge('upper', 'lower', upper)//' body, '// &
                           to_text(largest%value, 4)//' '// &
                           trim(place_in_history(simulation, where_it_is%step, where_it_is%reversal))// &
-                          ', exceeds its yield_strength '//to_text(body%yield_strength)// &
+                          ', exceeds its yield_strength '//to_text(strength_at(largest))//in_layer(largest)// &
                           ': stresses and tractions are not valid beyond yield')
          end associate
       end if
+
+   contains
+
+      !> The yield strength of the layer in which a stress is, or of the body.
+      pure real(wp) function strength_at(stress)
+         type(largest_type), intent(in) :: stress
+
+         strength_at = body%strength_of(body%layer_at(abs(stress%y)))
+      end function strength_at
+
+      !> Which layer that is, in words; empty without layers.
+      pure function in_layer(stress) result(words)
+         type(largest_type), intent(in) :: stress
+         character(:), allocatable :: words
+
+         words = ''
+         if (.not. body%elasticity%is_layered()) return
+         words = ' in layer '//to_text(body%layer_at(abs(stress%y)))
+         if (body%layer_at(abs(stress%y)) > size(body%elasticity%layer)) words = ' below the layers'
+      end function in_layer
    end subroutine check_yield
 
    !> The end of a load segment in words; padded with blanks.

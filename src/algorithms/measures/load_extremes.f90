@@ -176,7 +176,7 @@ contains
          if (.not. model%scene%has_layers(side == 2)) cycle
          call state_interior(model, state, side == 2, interior, available)
          call find_largest_at_interfaces(interior, tension, shear)
-         call self%interface_tension(side)%raise(tension%value, row, tension%x, tension%y)
+         if (tension%value > 0.0_wp) call self%interface_tension(side)%raise(tension%value, row, tension%x, tension%y)
          call self%interface_shear(side)%raise(shear%value, row, shear%x, shear%y)
          call estimate_in_layers(interior, estimates(candidate_tension(side)), estimates(candidate_von_mises(side)))
       end do

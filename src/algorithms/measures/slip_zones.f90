@@ -313,8 +313,8 @@ contains
 
          if (.not. model%compliance%has_block(block_up) .or. .not. model%scene%modulus() > 0.0_wp) return
          half_width = 0.5_wp*sum(model%width(first:last))
-         pair = model%scene%near_field()
-         ratio = spence_stick_ratio(sqrt(pair%shear_ratio())*model%scene%friction%static%largest(), model%scene%beta())
+         pair = model%scene%near_field_over(half_width)
+         ratio = spence_stick_ratio(sqrt(pair%shear_ratio())*model%scene%friction%static%largest(), pair%beta())
          width = half_width*(1.0_wp - ratio)
          if (width > negligible_pressing*half_width .and. width <= widest_hidden*contact_interval(model, state)) &
             missing = model%scene%friction%static%largest()**2*pair%tangential*state%fields%force(motion_approach)**2 &

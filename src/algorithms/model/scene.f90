@@ -127,7 +127,7 @@ module mfv_scene
    end type mesh_request_type
 
    !> What is wrong with a scene of two rigid bodies, for messages.
-   character(*), parameter :: both_rigid = 'both bodies are rigid; at least one must be elastic'
+   character(*), parameter :: both_rigid = 'both bodies are rigid; at least one must be elastic or have layers'
 
    type :: scene_type
       character(:), allocatable :: title
@@ -149,7 +149,7 @@ module mfv_scene
       procedure :: moves
       procedure :: near_field
       procedure :: modulus
-      procedure :: modulus_over
+      procedure :: near_field_over
       procedure :: is_layered
       procedure :: has_layers
       procedure :: compressed_thickness
@@ -318,18 +318,13 @@ contains
       modulus = both%modulus()
    end function modulus
 
-   !> The same under pressures that vary over a length, see mfv_elasticity; of bodies without layers, whatever the length.
-   pure real(wp) function modulus_over(self, length) result(modulus)
+   !> The constants of both bodies for tractions that vary over a length, see mfv_elasticity; without layers those of the near field.
+   pure type(near_field_type) function near_field_over(self, length) result(both)
       class(scene_type), intent(in) :: self
       real(wp), intent(in) :: length
 
-      modulus = self%modulus()
-      if (.not. self%is_layered() .or. .not. modulus > 0.0_wp) return
-      modulus = 0.0_wp
-      if (.not. self%lower%rigid) modulus = modulus + 1.0_wp/self%lower%elasticity%modulus_over(length)
-      if (.not. self%upper%rigid) modulus = modulus + 1.0_wp/self%upper%elasticity%modulus_over(length)
-      modulus = 1.0_wp/modulus
-   end function modulus_over
+      both = pair_of(self%lower%elasticity%near_field_over(length), self%upper%elasticity%near_field_over(length))
+   end function near_field_over
 
    !> Whether a body has layers.
    pure logical function is_layered(self)

@@ -4,6 +4,7 @@ module mfv_scene_indenter
    use mfv_geometry, only: shape_flat_punch, shape_half_plane, shape_matrix, shape_power, shape_profile, &
                            shape_rounded_punch, shape_wave, shape_wedge
    use mfv_kinds, only: wp
+   use mfv_near_field, only: near_field_type
    use mfv_motions, only: motion_approach, control_force, control_displacement
    use mfv_reference_indenter, only: flat_indenter, indenter_type, power_indenter, rounded_punch_indenter
    use mfv_scene, only: scene_type
@@ -75,7 +76,8 @@ contains
       type(scene_type), intent(in) :: scene
       type(indenter_type) :: indenter
       real(wp) :: force
-      integer, parameter :: most_iterations = 12
+      integer, parameter :: most_iterations = 20
+      type(near_field_type) :: over_width
       integer :: i
 
       half_width = 0.0_wp
@@ -86,7 +88,8 @@ contains
       if (.not. scene%is_layered() .or. .not. half_width > 0.0_wp) return
       ! The modulus is that over the half-width.
       do i = 1, most_iterations
-         half_width = sqrt(half_width*indenter%half_width(0.5_wp*force/scene%modulus_over(half_width)))
+         over_width = scene%near_field_over(half_width)
+         half_width = (half_width**2*indenter%half_width(0.5_wp*force/over_width%modulus()))**(1.0_wp/3.0_wp)
       end do
    end function half_width_of_forces
 

@@ -75,6 +75,13 @@ contains
          call reader%need('layer', number, 'body', error)
          if (.not. allocated(error)) call reader%need('layer', number, 'thickness', error)
          if (allocated(error)) return
+         if (number > 1) then
+            if (reader%integer_value('layer', number, 'body') < reader%integer_value('layer', number - 1, 'body')) then
+               call reader%complain('layer', number, 'body', 'must not be below that of the layer before: give the layers of '// &
+                                    'body 1 first', error)
+               return
+            end if
+         end if
          allowed = 'body thickness elasticity yield_strength '// &
                    trim(material_keys(reader%text_value('layer', number, 'elasticity')))
          do i = 1, size(keys)
@@ -125,6 +132,12 @@ contains
       if (shape /= 'matrix' .and. .not. rigid) then
          elasticity = reader%text_value('body', body, 'elasticity')
          allowed = allowed//' elasticity yield_strength datum '//trim(material_keys(elasticity))
+         if (reader%has('body', body, 'elasticity') .and. elasticity == 'own' .and. size(layers_of(reader, body)) > 0) then
+            call reader%complain('body', body, 'elasticity', "must be 'half_plane' with layers, or be omitted: so does the "// &
+                                 'body deform', error)
+            return
+         end if
+         if (size(layers_of(reader, body)) > 0) shape = shape//' with layers'
          if (elasticity /= 'own') then
             shape = shape//" with elasticity='"//elasticity//"'"
          else if ((shape == 'disk' .or. shape == 'hole') .and. size(layers_of(reader, body)) == 0) then
@@ -223,8 +236,8 @@ contains
          layer(i)%yield_strength = reader%real_value('layer', numbers(i), 'yield_strength')
          call read_material('layer', reader, numbers(i), plane, number == 2, layer(i)%material, error)
          if (.not. allocated(error) .and. .not. is_moderate(layer(i)%material)) &
-            call reader%complain('layer', numbers(i), 'elasticity', 'the moduli of the layer differ too much for its kernels; '// &
-                                 'they may differ by a factor of about 1e4', error)
+            call reader%complain('layer', numbers(i), 'elasticity', 'the moduli of the layer differ too much: some of its '// &
+                                 'waves hardly decay, and its kernels would take too long', error)
          if (allocated(error)) return
       end do
       call body%elasticity%coat(layer, body%rigid)

@@ -39,7 +39,8 @@ contains
          call reader%complain('mesh', 1, 'normals', "must be 'vertical' unless a disk is in a hole", error)
       else if (scene%mesh%radial .and. .not. (scene%lower%elasticity%is_circle() .and. &
                                               scene%upper%elasticity%is_circle())) then
-         call reader%complain('mesh', 1, 'normals', "must be 'vertical' unless both bodies have elasticity='own'", error)
+         call reader%complain('mesh', 1, 'normals', "must be 'vertical' unless both bodies have elasticity='own' and "// &
+                              'no layers', error)
       else if (scene%mesh%radial .and. scene%mesh%parabolic) then
          call reader%complain('mesh', 1, 'normals', "must be 'vertical' with gap='parabolic'", error)
       end if

@@ -124,6 +124,7 @@ contains
       body = merge(2, 1, upper)
       kind = reader%text_value('body', body, 'shape')
       if (reader%logical_value('body', body, 'rigid')) kind = 'rigid '//kind
+      if (scene%has_layers(upper)) kind = kind//' with layers, which it does not stretch'
       call reader%complain(group, number, key, 'the '//merge('upper', 'lower', upper)//' body is a '// &
                            kind//'; a bulk stress needs an elastic half_plane, wedge, power, rounded_punch or profile', error)
    end subroutine check_motion

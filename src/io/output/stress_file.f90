@@ -1,6 +1,6 @@
 !> Stresses inside the bodies of a result, added to its file under /stress/<state>/<body>, on a grid or at points.
 module mfv_stress_file
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan, ieee_quiet_nan, ieee_value
    use hdf5
    use mfv_case, only: case_type
    use mfv_case_reader, only: read_case_text
@@ -126,7 +126,6 @@ contains
       if (.not. allocated(error)) call read_case_text(text, path_from(directory, source), case, error, &
                                                       without_steps=.true.)
       if (allocated(error)) return
-      result%yield_strength = merge(case%scene%upper%yield_strength, case%scene%lower%yield_strength, request%upper)
       call case%scene%interior(request%upper, arc, width, pressure, shear, contact_edge, stick_edge, bulk(1), &
                                interior, available)
       if (.not. available) call set_error(error, MFV_INPUT_ERROR, 'the '//body_name(request)//' body is rigid or given by a '// &
@@ -173,6 +172,9 @@ contains
       end if
       result%largest = largest_von_mises(interior)
       result%tension = largest_tension(interior)
+      result%yield_strength = interior%body%strength_of(1)
+      if (ieee_is_finite(result%largest%y)) &
+         result%yield_strength = interior%body%strength_of(interior%body%layer_at(abs(result%largest%y)))
       if (allocated(request%x)) then
          result%x = request%x
          result%y = request%y
