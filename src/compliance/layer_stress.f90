@@ -104,7 +104,7 @@ contains
          end if
          scale = sum(layers%layer(:number - 1)%decay*layers%layer(:number - 1)%thickness)
          scale = scale + (depth - layers%depth_of(number - 1))*merge(layers%base%decay, &
-                                           layers%layer(min(number, size(layers%layer)))%decay, number > size(layers%layer))
+                                                   layers%layer(min(number, size(layers%layer)))%decay, number > size(layers%layer))
       end associate
    end function scale_at
 

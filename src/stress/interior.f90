@@ -187,7 +187,7 @@ contains
          contains_point = self%side*y <= 0.0_wp
          if (self%body%elasticity%is_layered()) then
             if (.not. self%body%elasticity%base%exists()) contains_point = contains_point .and. &
-                               self%body%layer_at(abs(y)) <= size(self%body%elasticity%layer)
+                                                                      self%body%layer_at(abs(y)) <= size(self%body%elasticity%layer)
          end if
       end if
    end function contains_point

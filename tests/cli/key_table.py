@@ -33,7 +33,6 @@ ORTHOTROPIC = {
 ANISOTROPIC = {"shape": "'half_plane'", "elasticity": "'anisotropic'", "compliances": "1, -0.3, 1, 0.1, 0, 2.6, -0.3, -0.3, 1, 0"}
 
 
-
 def layered(material: dict[str, str]) -> Groups:
     """A scene with a layer of a material."""
     groups = scene(ELASTIC, RIGID_DISK, MESH, COULOMB, PRESS, SHEAR)
@@ -476,7 +475,9 @@ _TOO_DIFFERENT = {"youngs_modulus_1": ("1e100",), "shear_modulus_12": ("1e-100",
 _COATED = {"cylinder": "coated", "composite": "coated composite", "crystal": "coated crystal"}
 CASE.update(
     {
-        ("layer", "body"): whole("layer(1)", "coated", "1", 1, 2, needed=": body is missing; it must be a whole number from 1 to 2"),
+        ("layer", "body"): whole(
+            "layer(1)", "coated", "1", 1, 2, needed=": body is missing; it must be a whole number from 1 to 2"
+        ),
         ("layer", "thickness"): positive(
             "layer(1)", "coated", "0.004", "length", needed=": thickness is missing; it must be a number above 0"
         ),

@@ -94,9 +94,7 @@ def waves(layers: list[tuple[float, Material]], base: Material | None, k: Number
     return np.asarray(np.linalg.solve(system, right)[:, :2, :])
 
 
-def matrix(
-    layers: list[tuple[float, Material]], base: Material | None, x: Numbers, datum: float, flip: bool = False
-) -> Numbers:
+def matrix(layers: list[tuple[float, Material]], base: Material | None, x: Numbers, datum: float, flip: bool = False) -> Numbers:
     """Displacements by nodal forces, shape (2n, 2n), normal components first: the first layer in closed form, and the difference
     by Gauss quadrature in equal intervals of k."""
     top = layers[0][1]
@@ -346,5 +344,7 @@ def test_yield_is_that_of_the_layer() -> None:
     base = rubbed(Body.half_plane(**ALLOY, yield_strength=10.0, layers=[Layer(**coat)]))
     assert not any("yield" in line for line in strong.attributes.get("warnings", "").splitlines())
     assert any("exceeds its yield_strength 100 in layer 1" in line for line in weak.attributes.get("warnings", "").splitlines())
-    assert any("exceeds its yield_strength 10 below the layers" in line for line in base.attributes.get("warnings", "").splitlines())
+    assert any(
+        "exceeds its yield_strength 10 below the layers" in line for line in base.attributes.get("warnings", "").splitlines()
+    )
     assert weak.observables.largest_lower_von_mises_y > -0.05 > base.observables.largest_lower_von_mises_y

@@ -8,6 +8,7 @@ module mfv_resolution
    use mfv_contact_state, only: contact_state_type
    use mfv_interior, only: has_interior
    use mfv_kinds, only: pi, wp
+   use mfv_layers, only: layers_type
    use mfv_motions, only: motion_approach
    use mfv_node_status, only: holds, in_contact, slip_sign
    use mfv_observables, only: observable_count, observables
@@ -46,6 +47,8 @@ contains
          call check_profile(simulation, .true., unresolved)
          call check_rounded_edges(simulation, .false., unresolved)
          call check_rounded_edges(simulation, .true., unresolved)
+         call check_layers(simulation, .false., unresolved)
+         call check_layers(simulation, .true., unresolved)
       end if
       call check_surface_ends(simulation, unresolved)
       call check_slip_zones(simulation, unresolved)
@@ -340,6 +343,39 @@ contains
                              trim(needed_mesh(model, state, max(width - edge_uncertainty*interval, 0.5_wp*width), resolved_nodes)))
       end associate
    end subroutine check_rounded_edges
+
+   !> Layers thinner than a few intervals: their stresses change over their thickness at the edges of the contact. Nearly incompressible
+   !> ones on a rigid body are squeezed out from where the mesh sees no difference of pressure.
+   subroutine check_layers(simulation, upper, unresolved)
+      type(simulation_type), intent(in) :: simulation
+      logical, intent(in) :: upper
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
+      !> Shear compliance over the normal one of a strip that is nearly incompressible; relative change of compliance that matters.
+      real(wp), parameter :: incompressible = 10.0_wp, least_change = 0.01_wp
+      type(body_type) :: body
+      type(layers_type) :: layers
+      character(:), allocatable :: name, names
+      real(wp) :: interval, thickness
+
+      if (.not. simulation%contact%model%scene%has_layers(upper)) return
+      associate (model => simulation%contact%model, state => simulation%contact%state)
+         body = model%scene%lower
+         if (upper) body = model%scene%upper
+         name = trim(merge('upper', 'lower', upper))
+         layers = body%elasticity%layers()
+         interval = minval(model%width, mask=in_contact(state%status))
+         thickness = body%elasticity%depth_of(1)
+         names = ''
+         associate (below => layers%compliance((0.0_wp, 0.0_wp)), endless => layers%layer(1)%endless)
+            if (maxval(abs(below - endless)) > least_change*maxval(abs(endless))) &
+               names = name//'_tension largest_'//name//'_tension'
+         end associate
+         if (layers%rigid_base .and. layers%uniform(1, 1) > incompressible*layers%uniform(2, 2)) names = all_quantities(simulation)
+         if (names == '' .or. thickness >= resolved_nodes*interval) return
+         call add_unresolved(unresolved, names, 'the first layer of the '//name//' body is '//to_text(thickness/interval, 2)// &
+                             ' intervals thick', 'use '//trim(needed_mesh(model, state, thickness, resolved_nodes)))
+      end associate
+   end subroutine check_layers
 
    !> The end of a surface that is no corner by design: the pressure there has no limit.
    subroutine check_surface_ends(simulation, unresolved)

@@ -4,7 +4,6 @@ module mfv_validity
    use mfv_body, only: body_type
    use mfv_cycle, only: cycle_type
    use mfv_kinds, only: pi, wp
-   use mfv_layers, only: layers_type
    use mfv_load_extremes, only: most_rows
    use mfv_motions, only: motion_approach, motion_shift, motion_rotation, control_displacement
    use mfv_near_field, only: near_field_type
@@ -204,24 +203,17 @@ contains
       end associate
    end subroutine check_wear
 
-   !> Layers that the mesh does not see, or that are worn through.
+   !> Layers that are worn off.
    subroutine check_layers(simulation, name, body, warnings)
       type(simulation_type), intent(in) :: simulation
       character(*), intent(in) :: name
       type(body_type), intent(in) :: body
       type(string_type), allocatable, intent(inout) :: warnings(:)
-      !> Of the shear compliance of a strip that is nearly incompressible; of the thickness, for an interval and for the worn depth.
-      real(wp), parameter :: incompressible = 0.1_wp, longest = 0.5_wp, deepest = 0.1_wp
-      type(layers_type) :: layers
+      !> Worn depth over the thickness.
+      real(wp), parameter :: deepest = 0.1_wp
 
       if (.not. body%elasticity%is_layered()) return
       associate (model => simulation%contact%model, elasticity => body%elasticity, state => simulation%contact%state)
-         layers = elasticity%layers()
-         if (layers%rigid_base .and. layers%uniform(2, 2) < incompressible*layers%uniform(1, 1) .and. &
-             model%interval() > longest*elasticity%depth_of(size(elasticity%layer))) &
-            call add_text(warnings, 'the layers of the '//name//' body are nearly incompressible and thinner than two '// &
-                          'intervals of the mesh, which does not resolve how they are squeezed out: half-width, '// &
-                          'approach and tractions may be wrong; use more nodes')
          if (model%scene%wear%acts() .and. maxval(state%worn) > deepest*elasticity%layer(1)%thickness) &
             call add_text(warnings, 'wear_depth is '//to_text(100.0_wp*maxval(state%worn)/elasticity%layer(1)%thickness, 2)// &
                           ' % of the first layer of the '//name//' body, whose thickness does not change in the model')
