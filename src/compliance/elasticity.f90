@@ -113,8 +113,8 @@ contains
       self%material = layer(1)%material
    end subroutine coat
 
-   !> Find the stresses at the surface of layers and their interfaces, for distances up to many times `length`, unless they are known;
-   !> none without layers.
+   !> Find the stresses at the surface of layers and their interfaces, for distances up to many times `length`, unless they are
+   !> known; none without layers.
    subroutine find_surface_stress(self, length)
       class(elasticity_type), intent(inout) :: self
       real(wp), intent(in) :: length

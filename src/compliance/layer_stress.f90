@@ -1,10 +1,10 @@
-!> Stresses in layers and their base under line loads on the surface: what mfv_interior_half_plane does not know of, smooth functions
-!> of x and the depth. In the first layer that is the difference to an endless one, below it everything.
+!> Stresses in layers and their base under line loads on the surface: what mfv_interior_half_plane does not know of, smooth
+!> functions of x and the depth. In the first layer that is the difference to an endless one, below it everything.
 !>
-!> A kernel K is (1/pi) Re integral over k > 0 of S(k) exp(i k x) dk, S from mfv_layers: an even function of x, by the part of S that
-!> is real for real k, and an odd one. They are kept as Chebyshev series in x over intervals in proportion to x, and in the depth over
-!> blocks that double downwards; blocks are made when they are asked for (`prepare`). At other depths the integrals are evaluated
-!> anew. Of a surface that repeats K is a sum over its modes and a mean, without extension along x.
+!> A kernel K is (1/pi) Re integral over k > 0 of S(k) exp(i k x) dk, S from mfv_layers: an even function of x, by the part of S
+!> that is real for real k, and an odd one. They are kept as Chebyshev series in x over intervals in proportion to x, and in the
+!> depth over blocks that double downwards; blocks are made when they are asked for (`prepare`). At other depths the integrals are
+!> evaluated anew. Of a surface that repeats K is a sum over its modes and a mean, without extension along x.
 module mfv_layer_stress
    use mfv_kinds, only: pi, wp
    use mfv_layers, only: layers_type, loads
@@ -90,8 +90,8 @@ contains
       end do
    end function layer_at
 
-   !> Length over which the functions are smooth at a depth in a layer, length: the distance of the load or, in the first layer, of its
-   !> nearest image.
+   !> Length over which the functions are smooth at a depth in a layer, length: the distance of the load or, in the first layer, of
+   !> its nearest image.
    pure real(wp) function scale_at(self, depth, number) result(scale)
       class(layer_stress_type), intent(in) :: self
       real(wp), intent(in) :: depth
@@ -354,8 +354,8 @@ contains
       odd = pack((here - there)*(0.0_wp, -0.5_wp), .true.)
    end subroutine find_parts
 
-   !> Stresses (sigma_xx, sigma_yy, sigma_xy) by unit line loads into the surface and to the right on the body, shape (3, loads), at the
-   !> signed distance x to the right of them, length; 1/length.
+   !> Stresses (sigma_xx, sigma_yy, sigma_xy) by unit line loads into the surface and to the right on the body, shape (3, loads), at
+   !> the signed distance x to the right of them, length; 1/length.
    pure function at(self, x) result(values)
       class(stress_row_type), intent(in) :: self
       real(wp), intent(in) :: x

@@ -34,8 +34,8 @@ module mfv_layered
 
 contains
 
-   !> Layers with `nodes` intervals of width `interval` (length); `constants`: of the near field of the first layer. Other arguments:
-   !> see new_half_plane.
+   !> Layers with `nodes` intervals of width `interval` (length); `constants`: of the near field of the first layer. Other
+   !> arguments: see new_half_plane.
    type(layered_type) function new_layered(layers, constants, nodes, interval, datum, coupling, tangential, period, ends) &
       result(self)
       type(layers_type), intent(in) :: layers

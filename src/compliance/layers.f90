@@ -4,11 +4,10 @@
 !> (Hooke's law and equilibrium; docs/theory.md). It is continuous between layers, so that the surface compliance Z, (k u, k v) =
 !> Z (sigma_xy, sigma_yy), follows from that of the base, step by step upwards:
 !>
-!>     Z' = (E11 Z + E12) (E21 Z + E22)^-1,   E = exp(k h N)
 !>
 !> An error decreases with every step, as all but the decaying waves do. exp is its series, in steps k h |N| <= 1, so that nothing
-!> overflows or cancels in thick layers, and thin ones keep their digits: Z of a thin layer on a rigid base is E12 in the first place.
-!> k may be complex, with a positive real part: Z continued analytically.
+!> overflows or cancels in thick layers, and thin ones keep their digits: Z of a thin layer on a rigid base is E12 in the first
+!> place. k may be complex, with a positive real part: Z continued analytically.
 module mfv_layers
    use mfv_kinds, only: wp
    use mfv_material, only: material_type
@@ -26,7 +25,8 @@ module mfv_layers
       real(wp) :: yield_strength = 0.0_wp
    end type layer_type
 
-   !> Terms of the series of exp; depth over the length of a wave at which the waves of the surface have decayed to round-off, twice.
+   !> Terms of the series of exp; depth over the length of a wave at which the waves of the surface have decayed to round-off,
+   !> twice.
    integer, parameter :: terms = 18
    real(wp), parameter :: deep = 20.0_wp
    !> Waves on the surface: of pressure and of shear.
@@ -202,8 +202,8 @@ contains
       end do
    end subroutine climb
 
-   !> Stresses (sigma_xx, sigma_yy, sigma_xy) by waves of pressure and of shear on the surface (`loads`), shape (3, loads, depths), at
-   !> ascending depths in one layer (size(layer) + 1: the base), lengths. `k`: 1/length.
+   !> Stresses (sigma_xx, sigma_yy, sigma_xy) by waves of pressure and of shear on the surface (`loads`), shape (3, loads, depths),
+   !> at ascending depths in one layer (size(layer) + 1: the base), lengths. `k`: 1/length.
    pure function stresses(self, k, number, depths) result(values)
       class(layers_type), intent(in) :: self
       complex(wp), intent(in) :: k
@@ -311,8 +311,8 @@ contains
       values(3, :) = here(1, :)
    end function wave_stress
 
-   !> Tractions at a depth `way` over k in an endless body by those on its surface, exp(-way G), G = N21 Z + N22. With the mean m of its
-   !> eigenvalues and half their difference d, exp(-way m) [cosh(way d) - sinh(way d)/d (G - m)].
+   !> Tractions at a depth `way` over k in an endless body by those on its surface, exp(-way G), G = N21 Z + N22. With the mean m of
+   !> its eigenvalues and half their difference d, exp(-way m) [cosh(way d) - sinh(way d)/d (G - m)].
    pure function decayed(layer, way) result(tractions)
       type(wave_layer_type), intent(in) :: layer
       complex(wp), intent(in) :: way
@@ -369,8 +369,8 @@ contains
       depth_of = sum(self%layer(:layer)%thickness)
    end function depth_of
 
-   !> Distance from the surface to the nearest image of a load there, beyond the first layer: what the layers below add is smooth over
-   !> it, length.
+   !> Distance from the surface to the nearest image of a load there, beyond the first layer: what the layers below add is smooth
+   !> over it, length.
    pure real(wp) function nearest_image(self)
       class(layers_type), intent(in) :: self
 

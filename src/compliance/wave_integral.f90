@@ -1,6 +1,6 @@
 !> Integrals over waves exp(i k x), k > 0, of functions that are analytic in k, smooth over a length `scale` in x, for all 0 <= x <=
-!> `reach` by one sum: along a ray into the complex plane, where exp(i k x) decays, by Gauss quadrature in intervals in proportion to
-!> k. Waves that are shifted along x against their decay (`slant`) allow a small angle only.
+!> `reach` by one sum: along a ray into the complex plane, where exp(i k x) decays, by Gauss quadrature in intervals in proportion
+!> to k. Waves that are shifted along x against their decay (`slant`) allow a small angle only.
 module mfv_wave_integral
    use mfv_kinds, only: pi, wp
    use mfv_quadrature, only: gauss_points
@@ -9,8 +9,8 @@ module mfv_wave_integral
    public :: new_wave_integral, last_exponent
 
    integer, parameter :: points = 20
-   !> exp(-k scale) at the end of the integrals; the largest angle and its least distance, as a ratio of tangents, from where shifted
-   !> waves no longer decay; what an interval may have of oscillation, over the decay up to its end.
+   !> exp(-k scale) at the end of the integrals; the largest angle and its least distance, as a ratio of tangents, from where
+   !> shifted waves no longer decay; what an interval may have of oscillation, over the decay up to its end.
    real(wp), parameter :: last_exponent = 44.0_wp, largest_angle = pi/8.0_wp, part_of_slant = 0.4_wp, part_of_decay = 1.1_wp
 
 contains

@@ -228,7 +228,8 @@ contains
       values(stress_xy) = self%side*values(stress_xy)
    end function stress
 
-   !> Stresses (sigma_xx, sigma_yy, sigma_xy) of a half-plane or a layer at a depth below x, lengths, as if it were below its surface.
+   !> Stresses (sigma_xx, sigma_yy, sigma_xy) of a half-plane or a layer at a depth below x, lengths, as if it were below its
+   !> surface.
    function stress_below(self, x, depth, layer) result(values)
       type(interior_type), intent(in) :: self
       real(wp), intent(in) :: x, depth

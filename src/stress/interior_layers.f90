@@ -32,8 +32,8 @@ module mfv_interior_layers
 
 contains
 
-   !> Layers under p + i tau, force/length^2, linear from `first` to `last` in elements from `from` to `to`, lengths; shapes (elements).
-   !> `table` is moved into the result.
+   !> Layers under p + i tau, force/length^2, linear from `first` to `last` in elements from `from` to `to`, lengths; shapes
+   !> (elements). `table` is moved into the result.
    type(layered_load_type) function new_layered_load(table, from, to, first, last) result(self)
       type(layer_stress_type), allocatable, intent(inout) :: table
       real(wp), intent(in) :: from(:), to(:)
@@ -154,8 +154,8 @@ contains
       lagrange = lagrange/points
    end function lagrange
 
-   !> Stresses (sigma_xx, sigma_yy, sigma_xy), force/length^2, at a depth in a layer below the surface point x, lengths: in the first
-   !> layer those that an endless one does not have.
+   !> Stresses (sigma_xx, sigma_yy, sigma_xy), force/length^2, at a depth in a layer below the surface point x, lengths: in the
+   !> first layer those that an endless one does not have.
    pure function stress(self, x, depth, layer)
       class(layered_load_type), intent(in) :: self
       real(wp), intent(in) :: x, depth

@@ -285,8 +285,8 @@ contains
       end associate
    end function candidates
 
-   !> Largest stress along the surface or an interface: the best local maxima of ascending points, refined between their neighbours by
-   !> golden-section search. `kind`: surface_tension and so on; `layer`: above the interface.
+   !> Largest stress along the surface or an interface: the best local maxima of ascending points, refined between their neighbours
+   !> by golden-section search. `kind`: surface_tension and so on; `layer`: above the interface.
    subroutine refine_on_line(interior, places, kind, place, value, layer)
       type(interior_type), intent(in) :: interior
       real(wp), intent(in) :: places(:)

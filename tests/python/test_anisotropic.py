@@ -206,7 +206,9 @@ def test_an_isotropic_material_by_its_compliances_is_isotropic(plane: str, angle
         for name in one[group] if isinstance(one, dict) else getattr(one, group):
             expected = np.asarray(getattr(one, group)[name], dtype=float)
             scale = np.max(np.abs(expected[np.isfinite(expected)]), initial=0.0)
-            np.testing.assert_allclose(getattr(other, group)[name], expected, rtol=1e-8, atol=1e-10 * scale, err_msg=name)
+            # The place of a maximum is known to the root of round-off.
+            rtol = 1e-7 if name.endswith(("_x", "_y")) else 1e-8
+            np.testing.assert_allclose(getattr(other, group)[name], expected, rtol=rtol, atol=1e-10 * scale, err_msg=name)
     x, y = np.linspace(-2.0, 2.0, 9), np.array([0.0, -0.05, -0.3, -2.0])[:, None]
     fields = [mfv.stress.stress(result, x, y) for result in results]
     for name in ("sigma_xx", "sigma_yy", "sigma_xy", "sigma_zz", "von_mises"):

@@ -344,8 +344,8 @@ contains
       end associate
    end subroutine check_rounded_edges
 
-   !> Layers thinner than a few intervals: their stresses change over their thickness at the edges of the contact. Nearly incompressible
-   !> ones on a rigid body are squeezed out from where the mesh sees no difference of pressure.
+   !> Layers thinner than a few intervals: their stresses change over their thickness at the edges of the contact. Nearly
+   !> incompressible ones on a rigid body are squeezed out from where the mesh sees no difference of pressure.
    subroutine check_layers(simulation, upper, unresolved)
       type(simulation_type), intent(in) :: simulation
       logical, intent(in) :: upper

@@ -318,7 +318,8 @@ contains
       modulus = both%modulus()
    end function modulus
 
-   !> The constants of both bodies for tractions that vary over a length, see mfv_elasticity; without layers those of the near field.
+   !> The constants of both bodies for tractions that vary over a length, see mfv_elasticity; without layers those of the near
+   !> field.
    pure type(near_field_type) function near_field_over(self, length) result(both)
       class(scene_type), intent(in) :: self
       real(wp), intent(in) :: length
