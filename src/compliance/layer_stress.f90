@@ -1,20 +1,22 @@
 !> Stresses in layers and their base under line loads on the surface: what mfv_interior_half_plane does not know of, smooth
 !> functions of x and the depth. In the first layer that is the difference to an endless one, below it everything.
 !>
-!> A kernel K is (1/pi) Re integral over k > 0 of S(k) exp(i k x) dk, S from mfv_layers: an even function of x, by the part of S
-!> that is real for real k, and an odd one. They are kept as Chebyshev series in x over intervals in proportion to x, and in the
-!> depth over blocks that double downwards; blocks are made when they are asked for (`prepare`). At other depths the integrals are
-!> evaluated anew. Of a surface that repeats K is a sum over its modes and a mean, without extension along x.
+!> A kernel K is (1/pi) Re integral over k > 0 of S(k) exp(i k x) dk, S from mfv_layers, to the right of the load; to its left with
+!> the conjugate of S at the conjugate of k. (Without oblique layers K is even or odd in x.) They are kept as Chebyshev series in the
+!> distance over intervals in proportion to it, and in the depth over blocks that double downwards; blocks are made when they are
+!> asked for (`prepare`). At other depths the integrals are evaluated anew. Of a surface that repeats K is a sum over its modes and a
+!> mean, without extension along x.
 module mfv_layer_stress
    use mfv_kinds, only: pi, wp
    use mfv_layers, only: layers_type, loads
    use mfv_wave_integral, only: last_exponent, new_wave_integral
    implicit none
    private
-   public :: layer_stress_type, new_layer_stress, stress_row_type, row_functions
+   public :: layer_stress_type, new_layer_stress, stress_row_type
 
-   !> Stresses (sigma_xx, sigma_yy, sigma_xy) by pressure and by shear, the even and the odd part of each.
-   integer, parameter :: row_functions = 6*loads
+   !> Stresses (sigma_xx, sigma_yy, sigma_xy) by pressure and by shear; their signs in the mirror image.
+   integer, parameter :: functions = 3*loads
+   real(wp), parameter :: mirrored(functions) = [1.0_wp, 1.0_wp, -1.0_wp, -1.0_wp, -1.0_wp, 1.0_wp]
    !> Terms of the series in x and in the depth; intervals of x until it doubles.
    integer, parameter :: terms = 24, terms_down = 20, intervals_per_doubling = 2
    !> The least thickness, over the distances that are asked for, as in mfv_smooth_kernel, which tells the error.
@@ -25,7 +27,8 @@ module mfv_layer_stress
       !> The layer of the depth; the length over which the functions are smooth, and the period, 0 without.
       integer :: layer = 1
       real(wp) :: scale = 1.0_wp, period = 0.0_wp
-      !> Ends of the intervals of x, from 0, and the series, shape (terms, row_functions, intervals).
+      !> Ends of the intervals of the distance, from 0, and the series to the right and, if they differ, to the left, shape
+      !> (terms, functions or twice as many, intervals).
       real(wp), allocatable :: ends(:), series(:, :, :)
    contains
       procedure :: at
@@ -250,7 +253,7 @@ contains
       real(wp), intent(in) :: depths(:), reach
       real(wp), value :: scale
       type(stress_row_type), intent(out) :: rows(:)
-      complex(wp), allocatable :: k(:), weight(:), even(:, :), odd(:, :), waves(:, :)
+      complex(wp), allocatable :: k(:), weight(:), sides(:, :, :), waves(:, :)
       real(wp), allocatable :: ends(:), x(:), values(:, :, :), mean(:)
       real(wp) :: turn(terms, terms)
       !> Waves at once.
@@ -266,40 +269,41 @@ contains
       else
          call new_wave_integral(scale, ends(size(ends)), self%layers%slant(), 1.0_wp, k, weight)
       end if
-      count = 3*loads*size(depths)
-      allocate (even(size(k), count), odd(size(k), count))
+      count = functions*size(depths)
+      allocate (sides(size(k), count, merge(2, 1, self%layers%is_oblique())))
       do j = 1, size(k)
-         call find_parts(self, number, depths, k(j), even(j, :), odd(j, :))
+         sides(j, :, 1) = weight(j)/pi*pack(waves_at(self, number, depths, k(j)), .true.)
+         if (size(sides, 3) == 1) cycle
+         sides(j, :, 2) = weight(j)/pi*conjg(pack(waves_at(self, number, depths, conjg(k(j))), .true.))
       end do
-      even = even*spread(weight/pi, 2, count)
-      odd = odd*spread(weight/pi, 2, count)
       turn = reshape([((cos(pi*(i - 1)*(j - 0.5_wp)/terms), i=1, terms), j=1, terms)], [terms, terms])
       n = size(ends) - 1
       x = [((ends(i) + 0.5_wp*(ends(i + 1) - ends(i))*(1.0_wp + turn(2, j)), j=1, terms), i=1, n)]
-      mean = [(0.0_wp, i=1, 3*loads)]
+      mean = [(0.0_wp, i=1, functions)]
       if (self%period > 0.0_wp .and. number > 1) mean = pack(self%layers%uniform_stresses(number)/self%period, .true.)
-      allocate (values(size(x), 2, count), source=0.0_wp)
+      allocate (values(size(x), count, size(sides, 3)), source=0.0_wp)
       do first = 1, size(k), at_once
          last = min(first + at_once - 1, size(k))
          waves = waves_of(k(first:last), x)
-         values(:, 1, :) = values(:, 1, :) + matmul(real(waves, wp), real(even(first:last, :), wp)) &
-                           - matmul(aimag(waves), aimag(even(first:last, :)))
-         values(:, 2, :) = values(:, 2, :) - matmul(real(waves, wp), aimag(odd(first:last, :))) &
-                           - matmul(aimag(waves), real(odd(first:last, :), wp))
+         do i = 1, size(sides, 3)
+            values(:, :, i) = values(:, :, i) + matmul(real(waves, wp), real(sides(first:last, :, i), wp)) &
+                              - matmul(aimag(waves), aimag(sides(first:last, :, i)))
+         end do
       end do
       do m = 1, size(depths)
          rows(m)%layer = number
          rows(m)%scale = scale
          rows(m)%period = self%period
          rows(m)%ends = ends
-         allocate (rows(m)%series(terms, row_functions, n))
+         allocate (rows(m)%series(terms, functions*size(sides, 3), n))
          do i = 1, n
-            associate (part => values(terms*(i - 1) + 1:terms*i, :, 3*loads*(m - 1) + 1:3*loads*m), &
-                       series => rows(m)%series(:, :, i))
-               series(:, :3*loads) = matmul(turn, part(:, 1, :) + spread(mean, 1, terms))*(2.0_wp/terms)
-               series(:, 3*loads + 1:) = matmul(turn, part(:, 2, :))*(2.0_wp/terms)
-               series(1, :) = 0.5_wp*series(1, :)
-            end associate
+            do j = 1, size(sides, 3)
+               associate (part => values(terms*(i - 1) + 1:terms*i, functions*(m - 1) + 1:functions*m, j), &
+                          series => rows(m)%series(:, functions*(j - 1) + 1:functions*j, i))
+                  series = matmul(turn, part + spread(mean, 1, terms))*(2.0_wp/terms)
+                  series(1, :) = 0.5_wp*series(1, :)
+               end associate
+            end do
          end do
       end do
    end subroutine make_rows
@@ -335,32 +339,25 @@ contains
       end do
    end function ends_of
 
-   !> The parts of S that are real and imaginary for real k, continued analytically, by load and depth.
-   pure subroutine find_parts(self, number, depths, k, even, odd)
+   !> S, by load and depth.
+   pure function waves_at(self, number, depths, k) result(waves)
       class(layer_stress_type), intent(in) :: self
       integer, intent(in) :: number
       real(wp), intent(in) :: depths(:)
       complex(wp), intent(in) :: k
-      complex(wp), intent(out) :: even(:), odd(:)
-      complex(wp), dimension(3, loads, size(depths)) :: here, there
+      complex(wp) :: waves(3, loads, size(depths))
 
-      here = self%layers%stresses(k, number, depths)
-      there = conjg(self%layers%stresses(conjg(k), number, depths))
-      if (number == 1) then
-         here = here - self%layers%endless_stresses(k, depths)
-         there = there - conjg(self%layers%endless_stresses(conjg(k), depths))
-      end if
-      even = pack(0.5_wp*(here + there), .true.)
-      odd = pack((here - there)*(0.0_wp, -0.5_wp), .true.)
-   end subroutine find_parts
+      waves = self%layers%stresses(k, number, depths)
+      if (number == 1) waves = waves - self%layers%endless_stresses(k, depths)
+   end function waves_at
 
    !> Stresses (sigma_xx, sigma_yy, sigma_xy) by unit line loads into the surface and to the right on the body, shape (3, loads), at
    !> the signed distance x to the right of them, length; 1/length.
    pure function at(self, x) result(values)
       class(stress_row_type), intent(in) :: self
       real(wp), intent(in) :: x
-      real(wp) :: values(3, loads), place, t, b(row_functions), last(row_functions), next(row_functions)
-      integer :: first, beyond, middle, j
+      real(wp) :: values(3, loads), place, t, b(functions), last(functions), next(functions)
+      integer :: first, beyond, middle, j, side
 
       place = x
       if (self%period > 0.0_wp) place = x - self%period*anint(x/self%period)
@@ -375,15 +372,18 @@ contains
          end if
       end do
       t = (2.0_wp*abs(place) - self%ends(first) - self%ends(beyond))/(self%ends(beyond) - self%ends(first))
+      side = 0
+      if (place < 0.0_wp) side = size(self%series, 2) - functions
       b = 0.0_wp
       last = 0.0_wp
       do j = terms, 2, -1
-         next = 2.0_wp*t*b - last + self%series(j, :, first)
+         next = 2.0_wp*t*b - last + self%series(j, side + 1:side + functions, first)
          last = b
          b = next
       end do
-      b = t*b - last + self%series(1, :, first)
-      values = reshape(b(:3*loads) + sign(1.0_wp, place)*b(3*loads + 1:), [3, loads])
+      b = t*b - last + self%series(1, side + 1:side + functions, first)
+      if (place < 0.0_wp .and. side == 0) b = mirrored*b
+      values = reshape(b, [3, loads])
    end function at
 
 end module mfv_layer_stress

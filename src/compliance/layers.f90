@@ -63,6 +63,7 @@ module mfv_layers
       procedure :: depth_of
       procedure :: nearest_image
       procedure :: slant
+      procedure :: is_oblique
       procedure :: wave_layer
    end type layers_type
 
@@ -383,5 +384,14 @@ contains
 
       slant = max(self%base%slant, maxval(self%layer%slant))
    end function slant
+
+   !> Whether the material of a layer, or of the base, has no axes along the surface.
+   pure logical function is_oblique(self)
+      class(layers_type), intent(in) :: self
+      integer :: i
+
+      is_oblique = any(abs(self%base%material%compliance(4:5)) > 0.0_wp) .or. &
+                   any([(any(abs(self%layer(i)%material%compliance(4:5)) > 0.0_wp), i=1, size(self%layer))])
+   end function is_oblique
 
 end module mfv_layers
