@@ -2,10 +2,10 @@
 !> functions of x and the depth. In the first layer that is the difference to an endless one, below it everything.
 !>
 !> A kernel K is (1/pi) Re integral over k > 0 of S(k) exp(i k x) dk, S from mfv_layers, to the right of the load; to its left with
-!> the conjugate of S at the conjugate of k. (Without oblique layers K is even or odd in x.) They are kept as Chebyshev series in the
-!> distance over intervals in proportion to it, and in the depth over blocks that double downwards; blocks are made when they are
-!> asked for (`prepare`). At other depths the integrals are evaluated anew. Of a surface that repeats K is a sum over its modes and a
-!> mean, without extension along x.
+!> the conjugate of S at the conjugate of k. (Without oblique layers K is even or odd in x.) They are kept as Chebyshev series in
+!> the distance over intervals in proportion to it, and in the depth over blocks that double downwards; blocks are made when they
+!> are asked for (`prepare`). At other depths the integrals are evaluated anew. Of a surface that repeats K is a sum over its modes
+!> and a mean, without extension along x.
 module mfv_layer_stress
    use mfv_kinds, only: pi, wp
    use mfv_layers, only: layers_type, loads

@@ -6,6 +6,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import os
+import re
 from typing import Any
 
 import numpy as np
@@ -348,3 +349,38 @@ def test_yield_is_that_of_the_layer() -> None:
         "exceeds its yield_strength 10 below the layers" in line for line in base.attributes.get("warnings", "").splitlines()
     )
     assert weak.observables.largest_lower_von_mises_y > -0.05 > base.observables.largest_lower_von_mises_y
+
+
+@pytest.mark.parametrize("thickness", [0.01, 0.6, 6.0])
+def test_tractions_at_an_interface_are_its_largest_at_any_thickness(thickness: float) -> None:
+    """Of coatings from a tenth to 60 times the half-width of the contact, also far beside it."""
+    coating = Layer(thickness=thickness, youngs_modulus=280e3, poisson_ratio=0.33)
+    seen = rubbed(Body.half_plane(**ALLOY, layers=[coating]), steps=[Step(normal_force=50), Step(force_ratio=0.6)])
+    line = np.linspace(-20, 20, 1001) * max(thickness, 0.05)
+    along = mfv.stress.stress(seen, line, np.full_like(line, -thickness))
+    for name, values in (("tension", along["sigma_yy"]), ("shear", np.abs(along["sigma_xy"]))):
+        largest = seen.observables[f"largest_lower_interface_{name}"]
+        assert largest == pytest.approx(np.max(values), rel=1e-2), name
+        assert largest >= np.max(values) * (1 - 1e-6), name
+
+
+@pytest.mark.parametrize(
+    "layers, keys, message",
+    [
+        ("&layer body=2, thickness=1, {m} /\n&layer body=1, thickness=1, {m} /", "", "give the layers of body 1 first"),
+        ("&layer body=1, {m} /", "", "&layer 1: thickness is missing"),
+        ("&layer body=1, thickness=1, youngs_modulus=1 /", "", "&layer 1: poisson_ratio is missing"),
+        ("&layer body=3, thickness=1, {m} /", "", "must be a whole number from 1 to 2"),
+        ("&layer body=1, thickness=1, axis_angle=3, {m} /", "", "has no effect with elasticity='isotropic'"),
+        ("&layer body=2, thickness=1, {m} /", "elasticity='own',", "must be 'half_plane' with layers, or be omitted"),
+        ("&layer body=2, thickness=1, {m} /", "kernel='fourier',", "has no effect for a disk with layers"),
+    ],
+)
+def test_wrong_layers_are_refused(layers: str, keys: str, message: str) -> None:
+    material = "youngs_modulus=2, poisson_ratio=0.3"
+    text = (
+        f"&body shape='half_plane', {material} /\n&body shape='disk', radius=1, {keys} {material} /\n"
+        f"{layers.format(m=material)}\n&step normal_force=1e-3 /\n"
+    )
+    with pytest.raises(mfv.MfvError, match=re.escape(message)):
+        mfv.run(Scene.from_text(text))
