@@ -159,7 +159,7 @@ def layer(thickness: float, material: Material) -> Layer:
     return Layer(thickness=thickness, elasticity=kind, **material.keys)
 
 
-@pytest.mark.parametrize("seed", range(200 if os.environ.get("MFV_DEEP") else 10))
+@pytest.mark.parametrize("seed", range(300 if os.environ.get("MFV_DEEP") else 10))
 def test_a_dense_matrix_gives_the_same(seed: int) -> None:
     """Random layers on half-planes and rigid bases, one or both bodies, all couplings: tractions to round-off, the same events."""
     draw = np.random.default_rng(seed)
@@ -199,7 +199,7 @@ def test_a_dense_matrix_gives_the_same(seed: int) -> None:
     one, other = direct.run(check=True), dense.run(check=True)
     scale = np.max(other.state.pressure)
     for name in ("pressure", "shear"):
-        np.testing.assert_allclose(getattr(one.state, name), getattr(other.state, name), rtol=0, atol=1e-11 * scale, err_msg=name)
+        np.testing.assert_allclose(getattr(one.state, name), getattr(other.state, name), rtol=0, atol=6e-12 * scale, err_msg=name)
     assert one.summary.events == other.summary.events
     assert one.summary.dissipation == pytest.approx(other.summary.dissipation, rel=1e-9, abs=1e-14)
     assert one.summary.largest_residual < 1e-10
