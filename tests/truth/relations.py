@@ -84,8 +84,11 @@ def upside_down(problem: Problem) -> Problem:
     _change_signs(made, TURNED_LOADS)
     bodies = [place for place, (group, _) in enumerate(made.groups) if group == "body"]
     made.groups[bodies[0]], made.groups[bodies[1]] = made.groups[bodies[1]], made.groups[bodies[0]]
-    for layer in made.all("layer"):
-        layer["body"] = 3 - layer["body"]
+    # Those of the first body come first.
+    places = [place for place, (group, _) in enumerate(made.groups) if group == "layer"]
+    turned = sorted((dict(keys, body=3 - keys["body"]) for keys in made.all("layer")), key=lambda keys: keys["body"])
+    for place, keys in zip(places, turned):
+        made.groups[place] = ("layer", keys)
     names = ("lower_bulk_stress", "upper_bulk_stress")
     for loads in made.loads():
         stresses = {name: loads.pop(name) for name in names if name in loads}

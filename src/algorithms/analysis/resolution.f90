@@ -368,7 +368,8 @@ contains
          names = ''
          associate (below => layers%compliance((0.0_wp, 0.0_wp)), endless => layers%layer(1)%endless)
             if (maxval(abs(below - endless)) > least_change*maxval(abs(endless))) &
-               names = name//'_tension largest_'//name//'_tension'
+               names = name//'_tension largest_'//name//'_tension largest_'//name//'_interface_tension largest_'//name// &
+                       '_interface_shear'
          end associate
          if (layers%rigid_base .and. layers%uniform(1, 1) > incompressible*layers%uniform(2, 2)) names = all_quantities(simulation)
          if (names == '' .or. thickness >= resolved_nodes*interval) return
