@@ -471,7 +471,7 @@ static void wrong_parameters(void) {
   refused(&b, mfv_differentiate(b.handle, "friction%mu"), "before the first step");
   refused(&b, mfv_differentiate(b.handle, "step(2)%shift"), "already begun");
   refused(&b, mfv_differentiate(b.handle, "shift step(3)%cycles"), "not the target of a motion");
-  refused(&b, mfv_differentiate(b.handle, "mesh%half_width"), "&body or &friction");
+  refused(&b, mfv_differentiate(b.handle, "mesh%half_width"), "&layer or &friction");
   refused(&b, mfv_differentiate(b.handle, "slide"), "unknown key of &step");
   refused(&b, mfv_derivative(b.handle, 0, &loads, 0, NULL, NULL), "no derivatives");
   CHECK(mfv_differentiate(b.handle, "shift step(3)%normal_force") == MFV_COMPLETE);

@@ -188,7 +188,7 @@ def test_cycles_of_a_history_hold_their_targets() -> None:
         ({"wear": mfv.Wear(coefficient=1e-3)}, "shift", "&wear"),
         ({}, "body(2)%redius", "did you mean radius"),
         ({}, "body(1)%radius", "not set in the case"),
-        ({}, "mesh%half_width", "&body or &friction"),
+        ({}, "mesh%half_width", "&body, &layer or &friction"),
         ({}, "body(1)%shape", "not a number"),
         ({}, "step(1)%friction", "not the target of a motion"),
     ],

@@ -327,7 +327,7 @@ contains
             call add_text(warnings, 'the largest von Mises stress of the '//merge('upper', 'lower', upper)//' body, '// &
                           to_text(largest%value, 4)//' '// &
                           trim(place_in_history(simulation, where_it_is%step, where_it_is%reversal))// &
-                          ', exceeds its yield_strength '//to_text(strength_at(largest))//in_layer(largest)// &
+                          ', exceeds its yield_strength '//to_text(strength_at(largest))//trim(in_layer(largest))// &
                           ': stresses and tractions are not valid beyond yield')
          end associate
       end if
@@ -341,10 +341,10 @@ contains
          strength_at = body%strength_of(body%layer_at(abs(stress%y)))
       end function strength_at
 
-      !> Which layer that is, in words; empty without layers.
+      !> Which layer that is, in words, padded with blanks; blank without layers.
       pure function in_layer(stress) result(words)
          type(largest_type), intent(in) :: stress
-         character(:), allocatable :: words
+         character(len=40) :: words
 
          words = ''
          if (.not. body%elasticity%is_layered()) return
