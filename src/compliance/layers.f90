@@ -4,6 +4,7 @@
 !> (Hooke's law and equilibrium; docs/theory.md). It is continuous between layers, so that the surface compliance Z, (k u, k v) =
 !> Z (sigma_xy, sigma_yy), follows from that of the base, step by step upwards:
 !>
+!>     Z' = (E11 Z + E12) (E21 Z + E22)^-1,   E = exp(k h N)
 !>
 !> An error decreases with every step, as all but the decaying waves do. exp is its series, in steps k h |N| <= 1, so that nothing
 !> overflows or cancels in thick layers, and thin ones keep their digits: Z of a thin layer on a rigid base is E12 in the first

@@ -2,6 +2,7 @@
 !>
 !> With Z of mfv_layers and the constants A, At, M, B of the first layer, an even function is
 !>
+!>     F(x) = (1/pi) integral over k > 0 of (Z - Z of an endless first layer)/k (cos kx - cos kD) dk,
 !>
 !> D the datum, and the odd one has sin kx. On a rigid base there is no datum: the logarithm of the first layer, with D, and F
 !> vanish together far away. The integrand decays as exp(-k d), d the distance of the nearest image of the load. Its limit at k = 0
