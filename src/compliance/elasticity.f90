@@ -7,7 +7,7 @@ module mfv_elasticity
    use mfv_kinds, only: wp
    use mfv_layer_stress, only: layer_stress_type, new_layer_stress
    use mfv_layered, only: new_layered
-   use mfv_layers, only: layer_type, layers_type, new_layers
+   use mfv_layers, only: layer_at_depth, layer_type, layers_type, new_layers
    use mfv_material, only: material_type
    use mfv_matrix_compliance, only: matrix_of, new_matrix_compliance
    use mfv_near_field, only: near_field_of, near_field_type
@@ -123,7 +123,7 @@ contains
       real(wp) :: reach
 
       if (.not. self%is_layered()) return
-      reach = maxval(distant*[length, sum(self%layer%thickness)])
+      reach = maxval(distant*[length, self%depth_of(size(self%layer))])
       if (allocated(self%layer_stress)) then
          if (self%layer_stress%reach >= reach) return
          deallocate (self%layer_stress)
@@ -163,9 +163,7 @@ contains
       class(elasticity_type), intent(in) :: self
       real(wp), intent(in) :: depth
 
-      do number = 1, size(self%layer)
-         if (depth <= self%depth_of(number)*(1.0_wp + 4.0_wp*epsilon(1.0_wp))) return
-      end do
+      number = layer_at_depth(self%layer%thickness, depth)
    end function layer_at
 
    !> The constants for tractions that vary over a length: of the near field or, with layers, of a wave of this length over 2 pi.

@@ -7,8 +7,9 @@
 !> are asked for (`prepare`). At other depths the integrals are evaluated anew. Of a surface that repeats K is a sum over its modes
 !> and a mean, without extension along x.
 module mfv_layer_stress
+   use mfv_chebyshev, only: chebyshev_coefficients, chebyshev_points, lagrange_weights, piecewise_type
    use mfv_kinds, only: pi, wp
-   use mfv_layers, only: layers_type, loads
+   use mfv_layers, only: layer_at_depth, layers_type, loads
    use mfv_wave_integral, only: last_exponent, new_wave_integral
    implicit none
    private
@@ -22,14 +23,11 @@ module mfv_layer_stress
    !> The least thickness, over the distances that are asked for, as in mfv_smooth_kernel, which tells the error.
    real(wp), parameter :: thinnest = 1.0e-8_wp
 
-   !> The functions at one depth.
-   type :: stress_row_type
-      !> The layer of the depth; the length over which the functions are smooth, and the period, 0 without.
-      integer :: layer = 1
+   !> The functions at one depth. The series are those to the right and, if they differ, to the left, shape (terms, functions or
+   !> twice as many, intervals).
+   type, extends(piecewise_type) :: stress_row_type
+      !> The length over which the functions are smooth, and the period, 0 without.
       real(wp) :: scale = 1.0_wp, period = 0.0_wp
-      !> Ends of the intervals of the distance, from 0, and the series to the right and, if they differ, to the left, shape
-      !> (terms, functions or twice as many, intervals).
-      real(wp), allocatable :: ends(:), series(:, :, :)
    contains
       procedure :: at
    end type stress_row_type
@@ -44,14 +42,12 @@ module mfv_layer_stress
    type :: layer_stress_type
       type(layers_type) :: layers
       real(wp) :: period = 0.0_wp, reach = 0.0_wp
-      !> At the surface, at the upper sides of the interfaces, and at all depths.
-      type(stress_row_type) :: surface
+      !> At the surface, at the upper sides of the interfaces (from 0), and at all depths.
       type(stress_row_type), allocatable :: interface(:)
       type(block_type), allocatable :: block(:)
    contains
       procedure :: prepare
       procedure :: row
-      procedure :: layer_at
       procedure :: scale_at
    end type layer_stress_type
 
@@ -61,37 +57,18 @@ contains
    type(layer_stress_type) function new_layer_stress(layers, period, reach) result(self)
       type(layers_type), intent(in) :: layers
       real(wp), intent(in) :: period, reach
-      type(stress_row_type) :: rows(1)
-      real(wp) :: depth
       integer :: i
 
       self%layers = layers
       self%period = period
       self%reach = reach
-      allocate (self%block(0))
-      call make_rows(self, 1, [0.0_wp], layers%nearest_image(), reach, rows)
-      self%surface = rows(1)
-      allocate (self%interface(size(layers%layer)))
-      depth = 0.0_wp
-      do i = 1, size(layers%layer)
-         depth = depth + layers%layer(i)%thickness
-         call make_rows(self, i, [depth], self%scale_at(depth, i), reach, rows)
-         self%interface(i) = rows(1)
+      allocate (self%block(0), self%interface(0:size(layers%layer)))
+      do i = 0, size(layers%layer)
+         associate (depth => layers%depth_of(i), number => max(i, 1))
+            call make_rows(self, number, [depth], self%scale_at(depth, number), reach, self%interface(i:i))
+         end associate
       end do
    end function new_layer_stress
-
-   !> Number of the layer at a depth, length; of two that meet there the upper one. size(layer) + 1: the base.
-   pure integer function layer_at(self, depth) result(number)
-      class(layer_stress_type), intent(in) :: self
-      real(wp), intent(in) :: depth
-      real(wp) :: bottom
-
-      bottom = 0.0_wp
-      do number = 1, size(self%layers%layer)
-         bottom = bottom + self%layers%layer(number)%thickness
-         if (depth <= bottom*(1.0_wp + 4.0_wp*epsilon(1.0_wp))) return
-      end do
-   end function layer_at
 
    !> Length over which the functions are smooth at a depth in a layer, length: the distance of the load or, in the first layer, of
    !> its nearest image.
@@ -106,8 +83,7 @@ contains
             return
          end if
          scale = sum(layers%layer(:number - 1)%decay*layers%layer(:number - 1)%thickness)
-         scale = scale + (depth - layers%depth_of(number - 1))*merge(layers%base%decay, &
-                                                   layers%layer(min(number, size(layers%layer)))%decay, number > size(layers%layer))
+         scale = scale + (depth - layers%depth_of(number - 1))*layers%decay_of(number)
       end associate
    end function scale_at
 
@@ -116,26 +92,23 @@ contains
       class(layer_stress_type), intent(inout) :: self
       real(wp), intent(in) :: deepest
       integer, parameter :: most_halvings = 6
-      real(wp) :: from, to, bottom, decay
+      real(wp) :: from, to, length
       integer :: number, n
 
       from = 0.0_wp
       n = size(self%block)
       if (n > 0) from = self%block(n)%to
       do while (from < deepest)
-         number = self%layer_at(from*(1.0_wp + 16.0_wp*epsilon(1.0_wp)) + tiny(1.0_wp))
-         if (number > size(self%layers%layer)) then
-            if (self%layers%rigid_base) exit
-            bottom = huge(1.0_wp)
-            decay = self%layers%base%decay
-         else
-            bottom = sum(self%layers%layer(:number)%thickness)
-            decay = self%layers%layer(number)%decay
+         number = layer_at_depth(self%layers%layer%thickness, from*(1.0_wp + 16.0_wp*epsilon(1.0_wp)) + tiny(1.0_wp))
+         to = huge(1.0_wp)
+         if (number <= size(self%layers%layer)) then
+            to = self%layers%depth_of(number)
+         else if (self%layers%rigid_base) then
+            exit
          end if
-         to = bottom
          if (number > 1) then
-            to = from + self%scale_at(from, number)/decay
-            if (to > bottom - 0.1_wp*(to - from)) to = bottom
+            length = self%scale_at(from, number)/self%layers%decay_of(number)
+            if (from + 1.1_wp*length < to) to = from + length
          end if
          call add_block(self, number, from, to, most_halvings)
          from = to
@@ -154,7 +127,7 @@ contains
       block%layer = number
       block%from = from
       block%to = to
-      call make_rows(self, number, from + 0.5_wp*(to - from)*(1.0_wp - nodes(terms_down)), &
+      call make_rows(self, number, chebyshev_points(terms_down, to, from), &
                      min(self%scale_at(from, number), self%scale_at(to, number)), self%reach, block%row)
       if (halvings > 0 .and. .not. has_converged(block)) then
          call add_block(self, number, from, 0.5_wp*(from + to), halvings - 1)
@@ -201,7 +174,7 @@ contains
       integer :: i, j
 
       if (.not. depth > 0.0_wp .and. reach <= self%reach) then
-         row = self%surface
+         row = self%interface(0)
          return
       end if
       do i = 1, size(self%block)
@@ -209,7 +182,7 @@ contains
             if (reach > self%reach .or. block%layer /= number .or. depth > block%to*(1.0_wp + 8.0_wp*epsilon(1.0_wp)) &
                 .or. depth < block%from*(1.0_wp - 8.0_wp*epsilon(1.0_wp))) cycle
             t = -(2.0_wp*depth - block%from - block%to)/(block%to - block%from)
-            weight = lagrange(t)
+            weight = lagrange_weights(terms_down, t)
             row = block%row(1)
             row%series = weight(1)*row%series
             do j = 2, terms_down
@@ -222,30 +195,6 @@ contains
       row = rows(1)
    end function row
 
-   !> Chebyshev points on (-1, 1), descending.
-   pure function nodes(number)
-      integer, intent(in) :: number
-      real(wp) :: nodes(number)
-      integer :: j
-
-      nodes = [(cos(pi*(j - 0.5_wp)/number), j=1, number)]
-   end function nodes
-
-   !> Weights of the values at the Chebyshev points for that at t (barycentric formula; Trefethen 2013, chapter 5).
-   pure function lagrange(t) result(weight)
-      real(wp), intent(in) :: t
-      real(wp) :: weight(terms_down), away(terms_down)
-      integer :: j
-
-      away = t - nodes(terms_down)
-      j = minloc(abs(away), dim=1)
-      weight = 0.0_wp
-      weight(j) = 1.0_wp
-      if (.not. abs(away(j)) > 0.0_wp) return
-      weight = [((-1)**j*sin(pi*(j - 0.5_wp)/terms_down), j=1, terms_down)]/away
-      weight = weight/sum(weight)
-   end function lagrange
-
    !> Rows at ascending depths in a layer for distances up to `reach`; `scale`: the length over which all of them are smooth.
    pure subroutine make_rows(self, number, depths, scale, reach, rows)
       class(layer_stress_type), intent(in) :: self
@@ -254,8 +203,7 @@ contains
       real(wp), value :: scale
       type(stress_row_type), intent(out) :: rows(:)
       complex(wp), allocatable :: k(:), weight(:), sides(:, :, :), waves(:, :)
-      real(wp), allocatable :: ends(:), x(:), values(:, :, :), mean(:)
-      real(wp) :: turn(terms, terms)
+      real(wp), allocatable :: ends(:), x(:), values(:, :, :), mean(:), series(:, :)
       !> Waves at once.
       integer, parameter :: at_once = 1000
       integer :: i, j, m, count, n, first, last
@@ -276,11 +224,11 @@ contains
          if (size(sides, 3) == 1) cycle
          sides(j, :, 2) = weight(j)/pi*conjg(pack(waves_at(self, number, depths, conjg(k(j))), .true.))
       end do
-      turn = reshape([((cos(pi*(i - 1)*(j - 0.5_wp)/terms), i=1, terms), j=1, terms)], [terms, terms])
       n = size(ends) - 1
-      x = [((ends(i) + 0.5_wp*(ends(i + 1) - ends(i))*(1.0_wp + turn(2, j)), j=1, terms), i=1, n)]
-      mean = [(0.0_wp, i=1, functions)]
-      if (self%period > 0.0_wp .and. number > 1) mean = pack(self%layers%uniform_stresses(number)/self%period, .true.)
+      x = [(chebyshev_points(terms, ends(i), ends(i + 1)), i=1, n)]
+      mean = [(0.0_wp, i=1, count)]
+      if (self%period > 0.0_wp .and. number > 1) &
+         mean = [(pack(self%layers%uniform_stresses(number)/self%period, .true.), i=1, size(depths))]
       allocate (values(size(x), count, size(sides, 3)), source=0.0_wp)
       do first = 1, size(k), at_once
          last = min(first + at_once - 1, size(k))
@@ -291,18 +239,16 @@ contains
          end do
       end do
       do m = 1, size(depths)
-         rows(m)%layer = number
          rows(m)%scale = scale
          rows(m)%period = self%period
          rows(m)%ends = ends
          allocate (rows(m)%series(terms, functions*size(sides, 3), n))
-         do i = 1, n
-            do j = 1, size(sides, 3)
-               associate (part => values(terms*(i - 1) + 1:terms*i, functions*(m - 1) + 1:functions*m, j), &
-                          series => rows(m)%series(:, functions*(j - 1) + 1:functions*j, i))
-                  series = matmul(turn, part + spread(mean, 1, terms))*(2.0_wp/terms)
-                  series(1, :) = 0.5_wp*series(1, :)
-               end associate
+      end do
+      do i = 1, n
+         do j = 1, size(sides, 3)
+            series = chebyshev_coefficients(values(terms*(i - 1) + 1:terms*i, :, j) + spread(mean, 1, terms))
+            do m = 1, size(depths)
+               rows(m)%series(:, functions*(j - 1) + 1:functions*j, i) = series(:, functions*(m - 1) + 1:functions*m)
             end do
          end do
       end do
@@ -356,34 +302,16 @@ contains
    pure function at(self, x) result(values)
       class(stress_row_type), intent(in) :: self
       real(wp), intent(in) :: x
-      real(wp) :: values(3, loads), place, t, b(functions), last(functions), next(functions)
-      integer :: first, beyond, middle, j, side
+      real(wp) :: values(3, loads), place
+      integer :: first
 
       place = x
       if (self%period > 0.0_wp) place = x - self%period*anint(x/self%period)
       first = 1
-      beyond = size(self%ends)
-      do while (beyond - first > 1)
-         middle = (first + beyond)/2
-         if (abs(place) < self%ends(middle)) then
-            beyond = middle
-         else
-            first = middle
-         end if
-      end do
-      t = (2.0_wp*abs(place) - self%ends(first) - self%ends(beyond))/(self%ends(beyond) - self%ends(first))
-      side = 0
-      if (place < 0.0_wp) side = size(self%series, 2) - functions
-      b = 0.0_wp
-      last = 0.0_wp
-      do j = terms, 2, -1
-         next = 2.0_wp*t*b - last + self%series(j, side + 1:side + functions, first)
-         last = b
-         b = next
-      end do
-      b = t*b - last + self%series(1, side + 1:side + functions, first)
-      if (place < 0.0_wp .and. side == 0) b = mirrored*b
-      values = reshape(b, [3, loads])
+      if (place < 0.0_wp) first = size(self%series, 2) - functions + 1
+      associate (b => self%values_at(abs(place), first, functions))
+         values = reshape(merge(mirrored, 1.0_wp, place < 0.0_wp .and. first == 1)*b, [3, loads])
+      end associate
    end function at
 
 end module mfv_layer_stress

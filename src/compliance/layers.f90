@@ -15,7 +15,7 @@ module mfv_layers
    use mfv_near_field, only: near_field_of, near_field_type
    implicit none
    private
-   public :: layer_type, layers_type, new_layers, loads, is_moderate
+   public :: layer_type, layers_type, new_layers, loads, is_moderate, layer_at_depth
 
    !> One layer.
    type :: layer_type
@@ -62,6 +62,7 @@ module mfv_layers
       procedure :: endless_stresses
       procedure :: uniform_stresses
       procedure :: depth_of
+      procedure :: decay_of
       procedure :: nearest_image
       procedure :: slant
       procedure :: is_oblique
@@ -217,7 +218,7 @@ contains
       real(wp) :: top, to
       integer :: i
 
-      top = sum(self%layer(:number - 1)%thickness)
+      top = self%depth_of(number - 1)
       values = 0.0_wp
       if (number > size(self%layer)) then
          if (self%rigid_base) return
@@ -370,6 +371,25 @@ contains
 
       depth_of = sum(self%layer(:layer)%thickness)
    end function depth_of
+
+   !> Least decay of the waves in a layer, or in the base, over k and a depth.
+   pure real(wp) function decay_of(self, number)
+      class(layers_type), intent(in) :: self
+      integer, intent(in) :: number
+
+      decay_of = self%base%decay
+      if (number <= size(self%layer)) decay_of = self%layer(number)%decay
+   end function decay_of
+
+   !> Number of the layer at a depth, of two that meet there the upper one, from the thicknesses from the surface down, lengths; one
+   !> more than there are: the base.
+   pure integer function layer_at_depth(thickness, depth) result(number)
+      real(wp), intent(in) :: thickness(:), depth
+
+      do number = 1, size(thickness)
+         if (depth <= sum(thickness(:number))*(1.0_wp + 4.0_wp*epsilon(1.0_wp))) return
+      end do
+   end function layer_at_depth
 
    !> Distance from the surface to the nearest image of a load there, beyond the first layer: what the layers below add is smooth
    !> over it, length.

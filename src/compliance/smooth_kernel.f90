@@ -11,6 +11,7 @@
 !>
 !> F is kept as Chebyshev series over intervals in proportion to x, halved where they do not converge.
 module mfv_smooth_kernel
+   use mfv_chebyshev, only: chebyshev_coefficients, chebyshev_points, piecewise_type
    use mfv_kinds, only: pi, wp
    use mfv_layers, only: layers_type
    use mfv_quadrature, only: gauss_points
@@ -28,13 +29,12 @@ module mfv_smooth_kernel
    !> The least thickness, over the distances that are asked for, and the most modes.
    real(wp), parameter :: thinnest = 1.0e-8_wp, most_modes = 1.0e6_wp
 
-   type :: smooth_kernel_type
+   !> The series are those of F, shape (terms, smooth_kernels, intervals).
+   type, extends(piecewise_type) :: smooth_kernel_type
       !> Distance of the nearest image of the load, length, and period, 0 without.
       real(wp) :: image = 1.0_wp, period = 0.0_wp
       !> Largest error of F over its largest value, from a second integral.
       real(wp) :: error = 0.0_wp
-      !> Ends of the intervals of x, from 0, and the coefficients of the series, shape (terms, smooth_kernels, intervals).
-      real(wp), allocatable :: ends(:), series(:, :, :)
       !> Points and weights of the mean over an interval.
       real(wp) :: place(mean_points, mean_points) = 0.0_wp, weight(mean_points, mean_points) = 0.0_wp
    contains
@@ -217,58 +217,33 @@ contains
       real(wp), intent(in) :: from, to, largest
       integer, intent(in) :: halvings
       real(wp), parameter :: tolerance = 16.0_wp*epsilon(1.0_wp)
-      real(wp) :: values(terms, smooth_kernels), turn(terms, terms), tail
-      real(wp), allocatable :: longer(:, :, :)
-      integer :: i, j, n
+      real(wp) :: x(terms), values(smooth_kernels, terms), coefficients(terms, smooth_kernels), tail
+      integer :: j
 
-      turn = reshape([((cos(pi*(i - 1)*(j - 0.5_wp)/terms), i=1, terms), j=1, terms)], [terms, terms])
+      x = chebyshev_points(terms, from, to)
       do j = 1, terms
-         values(j, :) = function_at(spectrum, from + 0.5_wp*(to - from)*(1.0_wp + turn(2, j)))
+         values(:, j) = function_at(spectrum, x(j))
       end do
-      values = matmul(turn, values)*(2.0_wp/terms)
-      values(1, :) = 0.5_wp*values(1, :)
-      tail = maxval(abs(values(terms - 1:, :)))/max(largest, maxval(abs(values)))
+      coefficients = chebyshev_coefficients(transpose(values))
+      tail = maxval(abs(coefficients(terms - 1:, :)))/max(largest, maxval(abs(coefficients)))
       if (halvings > 0 .and. tail > tolerance) then
          call add_interval(self, spectrum, from, 0.5_wp*(from + to), largest, halvings - 1)
          call add_interval(self, spectrum, 0.5_wp*(from + to), to, largest, halvings - 1)
          return
       end if
       self%error = max(self%error, tail)
-      n = size(self%ends)
-      allocate (longer(terms, smooth_kernels, n))
-      longer(:, :, :n - 1) = self%series
-      longer(:, :, n) = values
-      call move_alloc(longer, self%series)
-      self%ends = [self%ends, to]
+      call self%append(to, coefficients)
    end subroutine add_interval
 
    !> F at a signed distance, length^2/force.
    pure function at(self, x) result(values)
       class(smooth_kernel_type), intent(in) :: self
       real(wp), intent(in) :: x
-      real(wp) :: values(smooth_kernels), place, t, b(smooth_kernels, 2), next(smooth_kernels)
-      integer :: first, last, middle, k
+      real(wp) :: values(smooth_kernels), place
 
       place = x
       if (self%period > 0.0_wp) place = x - self%period*anint(x/self%period)
-      first = 1
-      last = size(self%ends)
-      do while (last - first > 1)
-         middle = (first + last)/2
-         if (abs(place) < self%ends(middle)) then
-            last = middle
-         else
-            first = middle
-         end if
-      end do
-      t = (2.0_wp*abs(place) - self%ends(first) - self%ends(last))/(self%ends(last) - self%ends(first))
-      b = 0.0_wp
-      do k = terms, 2, -1
-         next = 2.0_wp*t*b(:, 1) - b(:, 2) + self%series(k, :, first)
-         b(:, 2) = b(:, 1)
-         b(:, 1) = next
-      end do
-      values = t*b(:, 1) - b(:, 2) + self%series(1, :, first)
+      values = self%values_at(abs(place), 1, smooth_kernels)
       values(odd_kernel) = sign(1.0_wp, place)*values(odd_kernel)
    end function at
 

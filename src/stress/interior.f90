@@ -249,12 +249,8 @@ contains
       real(wp), intent(in) :: in_plane(3)
       type(material_type) :: material
 
-      if (self%body%elasticity%is_layered()) then
-         material = self%body%elasticity%material_of(layer)
-         stress = material%stress_out_of_plane(in_plane)
-      else
-         stress = self%body%elasticity%material%stress_out_of_plane(in_plane)
-      end if
+      material = self%body%elasticity%material_of(layer)
+      stress = material%stress_out_of_plane(in_plane)
    end function stress_zz_of
 
    !> Bulk stress of a layer, force/length^2: all extend alike along x.
@@ -318,12 +314,15 @@ contains
    pure real(wp) function surface_stress(self, arc)
       class(interior_type), intent(in) :: self
       real(wp), intent(in) :: arc
+      real(wp) :: of_layers(3)
 
       if (self%body%deforms_as_circle()) then
          surface_stress = self%circle%surface_stress(arc/self%body%radius)
       else
          surface_stress = self%half_plane%surface_stress(arc/self%length) + self%bulk_of(1)
-         if (self%body%elasticity%is_layered()) surface_stress = surface_stress + self%layers%surface_stress(arc)
+         if (.not. self%body%elasticity%is_layered()) return
+         of_layers = self%layers%interface_stress(arc, 0)
+         surface_stress = surface_stress + of_layers(stress_xx)
       end if
    end function surface_stress
 

@@ -2,7 +2,8 @@
 !> mfv_layer_stress over loads at Chebyshev points of panels, which have the same effect as the tractions on these (Lagrange
 !> interpolation of the functions). Distant panels act in groups of two, four, ..., as their functions are smoother.
 module mfv_interior_layers
-   use mfv_kinds, only: pi, wp
+   use mfv_chebyshev, only: chebyshev_points, lagrange_weights
+   use mfv_kinds, only: wp
    use mfv_layer_stress, only: layer_stress_type, stress_row_type
    use mfv_layers, only: loads
    use mfv_quadrature, only: gauss_points
@@ -22,10 +23,11 @@ module mfv_interior_layers
    type :: layered_load_type
       type(layer_stress_type), allocatable :: table
       real(wp) :: from = 0.0_wp, to = 0.0_wp
+      !> The points of a panel from -1 to 1.
+      real(wp) :: node(points) = 0.0_wp
       type(level_type), allocatable :: level(:)
    contains
       procedure :: stress
-      procedure :: surface_stress
       procedure :: interface_stress
       procedure, private :: sum_over
    end type layered_load_type
@@ -65,11 +67,12 @@ contains
       do i = 1, size(from)
          call add_element(self, from(i), to(i), first(i), last(i), place, weight)
       end do
+      self%node = chebyshev_points(points, -1.0_wp, 1.0_wp)
       ! From Chebyshev moments to loads at the points.
-      self%level(1)%load = matmul(reshape([((merge(1.0_wp, 2.0_wp, j == 1)*cos((j - 1)*acos(node(i)))/points, i=1, points), &
+      self%level(1)%load = matmul(reshape([((merge(1.0_wp, 2.0_wp, j == 1)*cos((j - 1)*acos(self%node(i)))/points, i=1, points), &
                                             j=1, points)], [points, points]), self%level(1)%load)
       do i = 2, levels
-         call join_panels(self%level(i - 1), self%level(i))
+         call join_panels(self%node, self%level(i - 1), self%level(i))
       end do
    end function new_layered_load
 
@@ -110,49 +113,20 @@ contains
    end subroutine add_element
 
    !> Loads of panels of twice the width.
-   pure subroutine join_panels(narrow, wide)
+   pure subroutine join_panels(node, narrow, wide)
+      real(wp), intent(in) :: node(:)
       type(level_type), intent(in) :: narrow
       type(level_type), intent(inout) :: wide
       real(wp) :: weight(points, points, 2)
-      integer :: i, j, panel
+      integer :: j, panel
 
-      weight = reshape([(((lagrange(i, 0.5_wp*(node(j) + 2*panel - 3)), i=1, points), j=1, points), panel=1, 2)], shape(weight))
+      weight = reshape([((lagrange_weights(points, 0.5_wp*(node(j) + 2*panel - 3)), j=1, points), panel=1, 2)], shape(weight))
       do panel = 1, size(narrow%load, 2)
          associate (load => wide%load(:, (panel + 1)/2))
             load = load + matmul(weight(:, :, 2 - modulo(panel, 2)), narrow%load(:, panel))
          end associate
       end do
    end subroutine join_panels
-
-   pure real(wp) function node(j)
-      integer, intent(in) :: j
-
-      node = -cos(pi*(j - 0.5_wp)/points)
-   end function node
-
-   !> Lagrange's polynomial that is 1 at node j and 0 at the others, at t, as a sum of Chebyshev polynomials.
-   pure real(wp) function lagrange(j, t)
-      integer, intent(in) :: j
-      real(wp), intent(in) :: t
-      real(wp) :: now, before, next, here, there, further
-      integer :: k
-
-      lagrange = 1.0_wp
-      before = 1.0_wp
-      now = t
-      there = 1.0_wp
-      here = node(j)
-      do k = 1, points - 1
-         lagrange = lagrange + 2.0_wp*now*here
-         next = 2.0_wp*t*now - before
-         further = 2.0_wp*node(j)*here - there
-         before = now
-         now = next
-         there = here
-         here = further
-      end do
-      lagrange = lagrange/points
-   end function lagrange
 
    !> Stresses (sigma_xx, sigma_yy, sigma_xy), force/length^2, at a depth in a layer below the surface point x, lengths: in the
    !> first layer those that an endless one does not have.
@@ -167,23 +141,7 @@ contains
       stress = self%sum_over(self%table%row(depth, layer, max(abs(x - self%from), abs(x - self%to))), x)
    end function stress
 
-   !> The first of them at the surface.
-   pure real(wp) function surface_stress(self, x)
-      class(layered_load_type), intent(in) :: self
-      real(wp), intent(in) :: x
-      real(wp) :: stress(3)
-
-      surface_stress = 0.0_wp
-      if (size(self%level) == 0) return
-      if (max(abs(x - self%from), abs(x - self%to)) > self%table%reach) then
-         stress = self%stress(x, 0.0_wp, 1)
-      else
-         stress = self%sum_over(self%table%surface, x)
-      end if
-      surface_stress = stress(1)
-   end function surface_stress
-
-   !> The same stresses as of `stress` at the upper side of the interface below a layer.
+   !> The same at the upper side of the interface below a layer; 0: at the surface.
    pure function interface_stress(self, x, layer) result(stress)
       class(layered_load_type), intent(in) :: self
       real(wp), intent(in) :: x
@@ -193,7 +151,7 @@ contains
       stress = 0.0_wp
       if (size(self%level) == 0) return
       if (max(abs(x - self%from), abs(x - self%to)) > self%table%reach) then
-         stress = self%stress(x, self%table%layers%depth_of(layer), layer)
+         stress = self%stress(x, self%table%layers%depth_of(layer), max(layer, 1))
       else
          stress = self%sum_over(self%table%interface(layer), x)
       end if
@@ -234,7 +192,7 @@ contains
             return
          end if
          do j = 1, points
-            by_load = row%at(away - 0.5_wp*level%width*node(j))
+            by_load = row%at(away - 0.5_wp*level%width*self%node(j))
             stress = stress + by_load(:, 1)*real(level%load(j, panel), wp) + by_load(:, 2)*aimag(level%load(j, panel))
          end do
       end associate
