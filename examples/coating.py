@@ -42,22 +42,9 @@ def draw(path: str) -> None:
         colour = f"C{number}"
         results = [rubbed(t, stiffness) for t in thicknesses]
         middle.semilogx(thicknesses / a, [r.observables.stick_ratio for r in results], "o-", color=colour, markersize=3, label=name)
-        right.loglog(
-            thicknesses / a,
-            [r.observables.largest_lower_interface_shear for r in results],
-            "o-",
-            color=colour,
-            markersize=3,
-            label=f"{name}: shear",
-        )
-        right.loglog(
-            thicknesses / a,
-            [r.observables.largest_lower_interface_tension for r in results],
-            "s--",
-            color=colour,
-            markersize=3,
-            label="tension",
-        )
+        for traction, style, label in (("shear", "o-", f"{name}: shear"), ("tension", "s--", "tension")):
+            values = [r.observables[f"largest_lower_interface_{traction}"] for r in results]
+            right.loglog(thicknesses / a, values, style, color=colour, markersize=3, label=label)
         one = rubbed(0.3 * a, stiffness)
         below = mfv.stress.stress(one, np.full_like(depths, -0.5 * a), -depths)
         left.plot(below["sigma_xx"], depths / a, color=colour, label=f"σxx, {name}")

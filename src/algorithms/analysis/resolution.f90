@@ -47,8 +47,8 @@ contains
          call check_profile(simulation, .true., unresolved)
          call check_rounded_edges(simulation, .false., unresolved)
          call check_rounded_edges(simulation, .true., unresolved)
-         call check_layers(simulation, .false., unresolved)
-         call check_layers(simulation, .true., unresolved)
+         call check_thin_layers(simulation, .false., unresolved)
+         call check_thin_layers(simulation, .true., unresolved)
       end if
       call check_surface_ends(simulation, unresolved)
       call check_slip_zones(simulation, unresolved)
@@ -346,7 +346,7 @@ contains
 
    !> Layers thinner than a few intervals: their stresses change over their thickness at the edges of the contact. Nearly
    !> incompressible ones on a rigid body are squeezed out from where the mesh sees no difference of pressure.
-   subroutine check_layers(simulation, upper, unresolved)
+   subroutine check_thin_layers(simulation, upper, unresolved)
       type(simulation_type), intent(in) :: simulation
       logical, intent(in) :: upper
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
@@ -376,7 +376,7 @@ contains
          call add_unresolved(unresolved, names, 'the first layer of the '//name//' body is '//to_text(thickness/interval, 2)// &
                              ' intervals thick', 'use '//trim(needed_mesh(model, state, thickness, resolved_nodes)))
       end associate
-   end subroutine check_layers
+   end subroutine check_thin_layers
 
    !> The end of a surface that is no corner by design: the pressure there has no limit.
    subroutine check_surface_ends(simulation, unresolved)

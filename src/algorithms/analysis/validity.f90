@@ -15,8 +15,8 @@ module mfv_validity
    use mfv_stress_search, only: largest_type
    use mfv_strings, only: add_text, string_type, to_text
    use mfv_surface_warnings, only: warn_of_surface
-   use mfv_zone_edges, only: zone_type
    use mfv_tolerances, only: certified
+   use mfv_zone_edges, only: zone_type
    implicit none
    private
    public :: validity_warnings
@@ -61,8 +61,8 @@ contains
       call check_order(simulation%contact%model%scene%lower, warnings)
       call check_rotation(simulation, warnings)
       call check_wear(simulation, warnings)
-      call check_layers(simulation, 'lower', simulation%contact%model%scene%lower, warnings)
-      call check_layers(simulation, 'upper', simulation%contact%model%scene%upper, warnings)
+      call check_worn_layers(simulation, 'lower', simulation%contact%model%scene%lower, warnings)
+      call check_worn_layers(simulation, 'upper', simulation%contact%model%scene%upper, warnings)
       call check_slide(simulation, simulation%contact%model%scene, warnings)
       if (simulation%cycle_count > 0) call check_drift(simulation%cycles(simulation%cycle_count), warnings)
       largest = simulation%contact%certificate%largest()
@@ -204,7 +204,7 @@ contains
    end subroutine check_wear
 
    !> Layers that are worn off.
-   subroutine check_layers(simulation, name, body, warnings)
+   subroutine check_worn_layers(simulation, name, body, warnings)
       type(simulation_type), intent(in) :: simulation
       character(*), intent(in) :: name
       type(body_type), intent(in) :: body
@@ -218,7 +218,7 @@ contains
             call add_text(warnings, 'wear_depth is '//to_text(100.0_wp*maxval(state%worn)/elasticity%layer(1)%thickness, 2)// &
                           ' % of the first layer of the '//name//' body, whose thickness does not change in the model')
       end associate
-   end subroutine check_layers
+   end subroutine check_worn_layers
 
    !> Rotation is first order: exact for rolling parabolas, otherwise with errors that grow with the rolled distance.
    subroutine check_rotation(simulation, warnings)

@@ -153,6 +153,7 @@ module mfv_scene
       procedure :: is_layered
       procedure :: has_layers
       procedure :: compressed_thickness
+      procedure, private :: is_all_on_rigid
       procedure :: curvature
       procedure :: beta
       procedure :: has_datum
@@ -334,13 +335,20 @@ contains
       is_layered = self%has_layers(.false.) .or. self%has_layers(.true.)
    end function is_layered
 
+   !> Whether all that deforms are layers on rigid bodies, or a matrix.
+   pure logical function is_all_on_rigid(self)
+      class(scene_type), intent(in) :: self
+
+      is_all_on_rigid = (self%lower%rigid .or. .not. self%lower%elasticity%has_datum()) .and. &
+                        (self%upper%rigid .or. .not. self%upper%elasticity%has_datum())
+   end function is_all_on_rigid
+
    !> Total thickness of layers between rigid bodies, length; 0 if there is another elastic body.
    pure real(wp) function compressed_thickness(self) result(thickness)
       class(scene_type), intent(in) :: self
 
       thickness = 0.0_wp
-      if ((.not. self%lower%rigid .and. self%lower%elasticity%has_datum()) .or. &
-          (.not. self%upper%rigid .and. self%upper%elasticity%has_datum()) .or. self%lower%is_matrix()) return
+      if (.not. self%is_all_on_rigid()) return
       if (self%has_layers(.false.)) thickness = sum(self%lower%elasticity%layer%thickness)
       if (self%has_layers(.true.)) thickness = thickness + sum(self%upper%elasticity%layer%thickness)
    end function compressed_thickness
@@ -378,9 +386,7 @@ contains
       class(scene_type), intent(in) :: self
 
       has_datum = .not. (self%lower%circular() .or. self%upper%circular() .or. self%lower%is_matrix())
-      if (.not. self%is_layered()) return
-      has_datum = has_datum .and. ((.not. self%lower%rigid .and. self%lower%elasticity%has_datum()) .or. &
-                                   (.not. self%upper%rigid .and. self%upper%elasticity%has_datum()))
+      if (self%is_layered()) has_datum = has_datum .and. .not. self%is_all_on_rigid()
    end function has_datum
 
    !> Datum of the displacements of both bodies together, length: the mean of the logarithms of their datums, weighted with their

@@ -45,7 +45,7 @@ contains
          call reader%need('body', body, 'shape', error)
          if (allocated(error)) return
       end do
-      call check_layers(reader, error)
+      call check_layer_keys(reader, error)
       if (allocated(error)) return
       if (reader%logical_value('body', 1, 'rigid') .and. reader%logical_value('body', 2, 'rigid') .and. &
           count_groups(reader, 'layer') == 0) then
@@ -63,7 +63,7 @@ contains
    end subroutine check_bodies
 
    !> Error for layers without a body, thickness or material, or with keys that have no effect.
-   subroutine check_layers(reader, error)
+   subroutine check_layer_keys(reader, error)
       type(reader_type), intent(in) :: reader
       type(error_type), allocatable, intent(out) :: error
       type(string_type), allocatable :: keys(:)
@@ -91,7 +91,7 @@ contains
             return
          end do
       end do
-   end subroutine check_layers
+   end subroutine check_layer_keys
 
    !> The numbers of the groups &layer of a body, from the surface down.
    pure function layers_of(reader, body) result(numbers)
