@@ -29,8 +29,8 @@ typedef enum mfv_status {
   MFV_STATUS_COUNT
 } mfv_status;
 
-/* Motions of the upper body and bulk stresses of either body, and how many there are: indices of the arrays below. Each has a
- * displacement and a force:
+/* Motions of the upper body, bulk stresses of either body, their interference, and how many there are: indices of the arrays below.
+ * Each has a displacement and a force:
  *   MFV_APPROACH  approach [length];                      normal force P >= 0 [force/length]
  *   MFV_SHIFT     shift [length], to the right;           tangential force Q [force/length], on the lower body to the right
  *   MFV_ROTATION  rotation [radians], counterclockwise;   moment M [force], counterclockwise, about the centre of rotation
@@ -38,10 +38,14 @@ typedef enum mfv_status {
  *                 in place of a displacement a bulk stress: a uniform stress sigma_xx [force/length^2], positive in tension, of an
  *                 elastic body that deforms like a half-plane. Prescribe it with MFV_DISPLACEMENT. Its force is the area [length^2]
  *                 by which the shear tractions shorten the body. Since 0.10.0.
+ *   MFV_INTERFERENCE
+ *                 distance by which one body is larger than its place [length], >= 0, which closes all gaps: of a disk in a hole of
+ *                 its radius, or between bodies whose approach is prescribed. Prescribe it with MFV_DISPLACEMENT. Its force is the
+ *                 sum of the pressure along the surface [force/length]. Since 0.10.0.
  * Later versions may add motions. Arrays have MFV_MOTIONS members; the library refuses structures of another size: compile
  * again. */
 enum { MFV_APPROACH = 0, MFV_SHIFT = 1, MFV_ROTATION = 2, MFV_LOWER_BULK_STRESS = 3, MFV_UPPER_BULK_STRESS = 4,
-       MFV_MOTIONS = 5 };
+       MFV_INTERFERENCE = 5, MFV_MOTIONS = 6 };
 
 /* Control of a motion in a step: hold its load, or prescribe its force or its displacement. */
 enum { MFV_KEEP = 0, MFV_FORCE = 1, MFV_DISPLACEMENT = 2 };
@@ -67,7 +71,8 @@ typedef struct mfv_step {
   int relative;               /* 1: targets are increments of the present loads */
   int unused[2];              /* 0 */
 } mfv_step;
-#define MFV_STEP_INIT {sizeof(mfv_step), {0.0, 0.0, 0.0, 0.0, 0.0}, 0.0, {MFV_KEEP, MFV_KEEP, MFV_KEEP, MFV_KEEP, MFV_KEEP}, \
+#define MFV_STEP_INIT {sizeof(mfv_step), {0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, 0.0, \
+                       {MFV_KEEP, MFV_KEEP, MFV_KEEP, MFV_KEEP, MFV_KEEP, MFV_KEEP}, \
                        1, 0, 0, {0, 0}}
 
 /* Version of the library, such as "0.1.0". Since 0.1.0. */
@@ -156,8 +161,8 @@ int mfv_message(const mfv_case *handle, char *buffer, size_t size);
 /* Loads and motions of the present state. */
 typedef struct mfv_loads {
   size_t size;                /* sizeof(mfv_loads) */
-  double force[MFV_MOTIONS];  /* of every motion: P, Q, M, and areas */
-  double motion[MFV_MOTIONS]; /* displacements of the upper body: approach, shift, rotation; and bulk stresses */
+  double force[MFV_MOTIONS];  /* of every motion: P, Q, M, areas, closing force */
+  double motion[MFV_MOTIONS]; /* displacements of the upper body: approach, shift, rotation; bulk stresses; interference */
   double dissipation;         /* energy dissipated by friction so far [force] */
   int contact_nodes, stick_nodes, slip_nodes;
   int events;                 /* number of loads at which nodes have changed their status */

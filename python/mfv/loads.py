@@ -1,4 +1,4 @@
-"""The motions of the upper body and the bulk stresses, the loads of a case, the progress of a run."""
+"""The motions of the upper body, the bulk stresses and the interference, the loads of a case, the progress of a run."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from numpy.typing import NDArray
 
 
 class Motion(NamedTuple):
-    """A motion of the upper body, or a bulk stress, and its conjugate force: the names of keys, fields and attributes."""
+    """A motion of the upper body, a bulk stress or the interference, and its conjugate force: the names of keys, fields and attributes."""
 
     displacement: str
     force: str
-    #: Whether it is a bulk stress, in place of a displacement: a step cannot prescribe its force.
-    is_stress: bool = False
+    #: Whether a step can prescribe its value only, not its force.
+    is_known: bool = False
 
     @property
     def targets(self) -> tuple[str, ...]:
         """The quantities that a step can prescribe, the force first."""
-        return (self.displacement,) if self.is_stress else (self.force, self.displacement)
+        return (self.displacement,) if self.is_known else (self.force, self.displacement)
 
 
 #: The motions in the order of the library (MFV_APPROACH, ...). What follows names the same, with types.
@@ -27,8 +27,9 @@ MOTIONS = (
     Motion("approach", "normal_force"),
     Motion("shift", "tangential_force"),
     Motion("rotation", "moment"),
-    Motion("lower_bulk_stress", "lower_contraction", is_stress=True),
-    Motion("upper_bulk_stress", "upper_contraction", is_stress=True),
+    Motion("lower_bulk_stress", "lower_contraction", is_known=True),
+    Motion("upper_bulk_stress", "upper_contraction", is_known=True),
+    Motion("interference", "closing_force", is_known=True),
 )
 
 
@@ -43,6 +44,7 @@ class Targets(TypedDict, total=False):
     rotation: float | None  #: of the upper body [radians], counterclockwise
     lower_bulk_stress: float | None  #: uniform sigma_xx of the lower body [force/length^2], positive in tension
     upper_bulk_stress: float | None  #: the same of the upper body
+    interference: float | None  #: by which one body is larger than its place [length]
 
 
 class Loads(NamedTuple):
@@ -53,11 +55,13 @@ class Loads(NamedTuple):
     moment: float  #: M [force], counterclockwise, about the centre of rotation
     lower_contraction: float  #: area by which the shear tractions shorten the lower body [length^2], conjugate to its bulk stress
     upper_contraction: float  #: the same of the upper body
+    closing_force: float  #: sum of the pressure along the surface [force/length], conjugate to the interference
     approach: float  #: of the upper body [length]
     shift: float  #: of the upper body to the right [length]
     rotation: float  #: of the upper body [radians], counterclockwise
     lower_bulk_stress: float  #: uniform sigma_xx of the lower body [force/length^2], positive in tension
     upper_bulk_stress: float  #: the same of the upper body
+    interference: float  #: by which one body is larger than its place [length]
     dissipation: float  #: energy dissipated by friction so far [force]
     contact_nodes: int
     stick_nodes: int
@@ -90,11 +94,13 @@ class Progress(NamedTuple):
     moment: float
     lower_contraction: float
     upper_contraction: float
+    closing_force: float
     approach: float
     shift: float
     rotation: float
     lower_bulk_stress: float
     upper_bulk_stress: float
+    interference: float
 
     @property
     def done(self) -> float:

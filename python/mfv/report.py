@@ -67,6 +67,7 @@ KEY_NUMBERS = (
     ("summary", "moment", "moment M"),
     ("summary", "lower_bulk_stress", "bulk stress of the lower body"),
     ("summary", "upper_bulk_stress", "bulk stress of the upper body"),
+    ("summary", "interference", "interference"),
     ("summary", "approach", "approach"),
     ("summary", "shift", "shift U"),
     ("summary", "contact_half_width", "contact half-width"),

@@ -391,6 +391,7 @@ class Step(KeyGroup):
     rotation: float | None = None
     lower_bulk_stress: float | None = None
     upper_bulk_stress: float | None = None
+    interference: float | None = None
     friction: bool | None = None
     cycles: int | None = None
     steady_tolerance: float | None = None
@@ -417,6 +418,7 @@ class History(KeyGroup):
     rotation: LoadList | None = None
     lower_bulk_stress: LoadList | None = None
     upper_bulk_stress: LoadList | None = None
+    interference: LoadList | None = None
     period: int | None = None
     cycles: int | None = None
     steady_tolerance: float | None = None

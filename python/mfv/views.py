@@ -43,6 +43,7 @@ LOADS = (
     ("M", "moment"),
     ("lower \N{GREEK SMALL LETTER SIGMA}", "lower_bulk_stress"),
     ("upper \N{GREEK SMALL LETTER SIGMA}", "upper_bulk_stress"),
+    ("interference", "interference"),
 )
 
 

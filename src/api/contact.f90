@@ -11,7 +11,7 @@ module mfv_contact
    use mfv_contact_state, only: contact_state_type
    use mfv_discretisation_error, only: estimate_error, has_coarser_meshes
    use mfv_motions, only: motions, motion_count, user_motions, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
-                          motion_upper_bulk, control_keep, control_force, control_displacement
+                          motion_upper_bulk, motion_interference, control_keep, control_force, control_displacement, first_control
    use mfv_derivatives, only: parameter_type
    use mfv_sensitivity, only: find_sensitivity
    use mfv_draft, only: draft_type
@@ -43,8 +43,8 @@ module mfv_contact
    !> Invalid control: a force and a displacement for one direction.
    integer, parameter :: control_both = -huge(1)
 
-   !> Loads and motions of a state, of motion_approach, motion_shift, motion_rotation, motion_lower_bulk and motion_upper_bulk:
-   !> forces [force/length], moment [force], areas [length^2]; lengths, radians, bulk stresses [force/length^2]; dissipation
+   !> Loads and motions of a state, of motion_approach, motion_shift, motion_rotation, motion_lower_bulk, motion_upper_bulk and
+   !> motion_interference: forces [force/length], moment [force], areas [length^2]; lengths, radians, bulk stresses [force/length^2]; dissipation
    !> [force]; and counts.
    type :: loads_type
       real(wp) :: force(user_motions) = 0.0_wp, motion(user_motions) = 0.0_wp, dissipation = 0.0_wp
@@ -415,12 +415,12 @@ contains
       call self%simulation%advance(absolute, observer=observer)
    end subroutine advance
 
-   !> A step to the given targets: normal_force or approach, tangential_force or shift, moment or rotation, bulk stresses; units and
-   !> the rest as in step_type.
+   !> A step to the given targets: normal_force or approach, tangential_force or shift, moment or rotation, bulk stresses,
+   !> interference; units and the rest as in step_type.
    pure function step_to(normal_force, approach, tangential_force, shift, moment, rotation, friction, cycles, steady_tolerance, &
-                         lower_bulk_stress, upper_bulk_stress) result(step)
+                         lower_bulk_stress, upper_bulk_stress, interference) result(step)
       real(wp), intent(in), optional :: normal_force, approach, tangential_force, shift, moment, rotation, steady_tolerance, &
-                                        lower_bulk_stress, upper_bulk_stress
+                                        lower_bulk_stress, upper_bulk_stress, interference
       logical, intent(in), optional :: friction
       integer, intent(in), optional :: cycles
       type(step_type) :: step
@@ -430,6 +430,7 @@ contains
       call choose(moment, rotation, step%control(motion_rotation), step%target(motion_rotation))
       call choose(displacement=lower_bulk_stress, control=step%control(motion_lower_bulk), target=step%target(motion_lower_bulk))
       call choose(displacement=upper_bulk_stress, control=step%control(motion_upper_bulk), target=step%target(motion_upper_bulk))
+      call choose(displacement=interference, control=step%control(motion_interference), target=step%target(motion_interference))
       if (present(friction)) step%friction = friction
       if (present(cycles)) step%cycles = cycles
       if (present(steady_tolerance)) step%steady_tolerance = steady_tolerance
@@ -469,24 +470,28 @@ contains
       logical :: strains(motion_count)
 
       strains = motions%is_stress .and. step%control /= control_keep
-      wrong = findloc(motions%pushes .and. step%control == control_force .and. step%target < 0.0_wp, .true., dim=1)
+      wrong = findloc(motions%pushes .and. step%control == first_control([(i, i=1, motion_count)]) .and. step%target < 0.0_wp, &
+                      .true., dim=1)
       if (any(step%control == control_both)) then
          call set_error(error, MFV_BAD_ARGUMENT, 'prescribe either the force or the displacement of a direction, not both')
       else if (any(step%control < control_keep .or. step%control > control_displacement)) then
          call set_error(error, MFV_BAD_ARGUMENT, 'a control must be MFV_KEEP, MFV_FORCE or MFV_DISPLACEMENT')
-      else if (any(strains .and. step%control == control_force)) then
-         call set_error(error, MFV_BAD_ARGUMENT, 'the control of a bulk stress must be MFV_KEEP or MFV_DISPLACEMENT, which '// &
-                        'prescribes it')
+      else if (any(motions%is_known .and. step%control == control_force)) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'the control of a bulk stress or an interference must be MFV_KEEP or '// &
+                        'MFV_DISPLACEMENT, which prescribes it')
       else if (strains(motion_lower_bulk) .and. .not. scene%can_have_bulk_stress(.false.)) then
          call set_error(error, MFV_BAD_ARGUMENT, 'the lower body cannot have a bulk stress'//why_not)
       else if (strains(motion_upper_bulk) .and. .not. scene%can_have_bulk_stress(.true.)) then
          call set_error(error, MFV_BAD_ARGUMENT, 'the upper body cannot have a bulk stress'//why_not)
+      else if (step%control(motion_interference) /= control_keep .and. .not. scene%can_interfere()) then
+         call set_error(error, MFV_BAD_ARGUMENT, 'an interference needs a disk and a hole of one radius')
       else if (any([(step%control(i) /= control_keep .and. .not. scene%can_repeat(i), i=1, motion_count)])) then
          call set_error(error, MFV_BAD_ARGUMENT, 'surfaces that repeat (period in &mesh) have no rotation and no bulk stress')
       else if (.not. all(ieee_is_finite(step%target))) then
          call set_error(error, MFV_BAD_ARGUMENT, 'a target is not finite')
       else if (wrong > 0) then
-         call set_error(error, MFV_BAD_ARGUMENT, 'the '//trim(motions(wrong)%force_name)//' must not be negative')
+         call set_error(error, MFV_BAD_ARGUMENT, 'the '//trim(merge(motions(wrong)%key, motions(wrong)%force_name, &
+                        motions(wrong)%is_known))//' must not be negative')
       else if (.not. ieee_is_finite(step%steady_tolerance) .or. step%steady_tolerance < 0.0_wp) then
          call set_error(error, MFV_BAD_ARGUMENT, 'steady_tolerance must be a number and not negative')
       else if (step%cycles < 0 .or. step%cycles > most_cycles) then

@@ -23,7 +23,7 @@ module mfv
    use mfv_kept_state, only: kept_state_type
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_count => user_motions, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
-                          motion_upper_bulk, control_keep, control_force, control_displacement
+                          motion_upper_bulk, motion_interference, control_keep, control_force, control_displacement
    use mfv_node_status, only: node_open, node_stick, node_slip_right, node_slip_left, node_frictionless, node_creep_right, &
                               node_creep_left
    use mfv_observer, only: observer_type

@@ -107,7 +107,7 @@ contains
       if (upper) seen%pair = zones%pair%with_reversed_shear()
       if (radial) seen%turn = self%outward/body%radius
       call find_traction_elements(arc, width, pressure, self%side*shear, seen, longest, self%elements)
-      if (zones%joined) call join_ends(self%elements, body%elasticity%period)
+      if (zones%joined) call join_ends(self%elements, zones%period)
       associate (e => self%elements)
          if (self%body%deforms_as_circle()) then
             self%length = body%radius

@@ -30,7 +30,8 @@ module mfv_surface_tractions
       logical, allocatable :: sharp(:, :)
       type(near_field_type) :: pair
       real(wp) :: turn = 0.0_wp
-      !> Whether sharp edges are ends of a period, beyond which the surface repeats.
+      !> Length after which the surface repeats, or 0; whether sharp edges are its ends.
+      real(wp) :: period = 0.0_wp
       logical :: joined = .false.
       !> Middle of that period, length.
       real(wp) :: middle = 0.0_wp
@@ -916,24 +917,25 @@ contains
    end function shape_of_correction
 
    !> With normals that turn along the surface the integrals of p and tau are not the forces. Give the elements both forces of the
-   !> nodes and the moment of the shear about the centre of the normals: tractions are scaled by a linear function of the arc
-   !> length, and shear is added as in balance.
+   !> nodes and the moment of the shear about the centre of the normals: tractions are multiplied by a sine of the angle, which has a
+   !> force on any arc, even around the whole circle, and shear is added as in balance.
    subroutine balance_inclined(patch, knots, values)
       type(fitted_patch_type), intent(in) :: patch
       real(wp), intent(in) :: knots(:)
       complex(wp), intent(inout) :: values(:)
       complex(wp) :: changes(size(knots), 3)
-      real(wp) :: place(size(knots)), middle, half, matrix(3, 3), missing(3), wanted(3)
+      real(wp) :: angle(size(knots)), middle, half, matrix(3, 3), missing(3), wanted(3)
       complex(wp) :: force
       integer :: i, n, pivot(3), code
 
       n = size(knots)
       middle = 0.5_wp*(knots(1) + knots(n))
       half = 0.5_wp*(knots(n) - knots(1))
-      place = (knots - middle)/half
+      angle = patch%turn*(knots - middle)
       changes(:, 1) = values
       if (.not. patch%has_ratio) changes(:, 1) = patch%contact%roots(knots)
-      changes(:, 2) = place*changes(:, 1)
+      changes(:, 2) = sin(angle)/(patch%turn*half)*changes(:, 1)
+      changes(:, 1) = cos(angle)*changes(:, 1)
       changes(:, 3) = cmplx(0.0_wp, shape_of_correction(patch, knots, values), wp)
       associate (tractions => cmplx(patch%pressure, patch%shear, wp)*patch%width)
          force = sum(tractions*exp(cmplx(0.0_wp, -patch%turn*(patch%arc - middle), wp)))

@@ -394,7 +394,7 @@ contains
          real(wp), intent(in) :: distance
 
          chord = abs(distance)
-         associate (period => model%scene%mesh%period)
+         associate (period => model%scene%repeat_length())
             if (period > 0.0_wp) chord = abs(sin(pi*distance/period))*period/pi
          end associate
       end function chord

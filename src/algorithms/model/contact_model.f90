@@ -16,7 +16,7 @@ module mfv_contact_model
    use mfv_quadrature, only: gauss_points
    use mfv_tolerances, only: significant
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
-                          motion_upper_bulk, motion_wear, arm_unit
+                          motion_upper_bulk, motion_interference, motion_wear, arm_unit
    use mfv_reference_indenter, only: indenter_type
    use mfv_clock, only: seconds_now
    use mfv_scene, only: scene_type
@@ -132,8 +132,8 @@ contains
       else if (scene%lower%is_matrix()) then
          nodes = size(scene%lower%position)
          interval = sum(scene%lower%elasticity%width)/nodes
-      else if (scene%mesh%period > 0.0_wp .and. .not. small_in_period(scene)) then
-         interval = scene%mesh%period/nodes
+      else if (scene%is_neat() .or. scene%mesh%period > 0.0_wp .and. .not. small_in_period(scene)) then
+         interval = scene%repeat_length()/nodes
          growing = .false.
       else if (scene%mesh%whole_circle) then
          interval = 2.0_wp*pi*scene%arc_radius()/nodes
@@ -176,7 +176,7 @@ contains
       type(scene_type), intent(in) :: scene
 
       can_choose_mesh = scene%lower%is_matrix() .or. allocated(scene%mesh%ends) .or. scene%mesh%period > 0.0_wp .or. &
-                        scene%mesh%half_width > 0.0_wp .or. scene%mesh%whole_circle .or. &
+                        scene%mesh%half_width > 0.0_wp .or. scene%mesh%whole_circle .or. scene%is_neat() .or. &
                         min(scene%lower%half_extent(), scene%upper%half_extent()) < huge(1.0_wp)
       if (.not. can_choose_mesh) can_choose_mesh = largest_half_width(scene, huge(1.0_wp)) > 0.0_wp
    end function can_choose_mesh
@@ -615,6 +615,7 @@ contains
       allocate (self%normal_arm(n, motion_count), self%tangential_arm(n, motion_count), source=0.0_wp)
       self%normal_arm(:, motion_approach) = 1.0_wp
       self%tangential_arm(:, motion_shift) = 1.0_wp
+      self%normal_arm(:, motion_interference) = 1.0_wp
       self%normal_arm(:, motion_wear) = -self%wear
       self%upright = .not. self%scene%mesh%radial
       if (self%scene%mesh%radial) then

@@ -8,15 +8,16 @@ module mfv_motions
    implicit none
    private
    public :: motion_type, motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
-             motion_upper_bulk, motion_wear, user_motions, bulk_motions, control_keep, control_force, &
-             control_displacement, controlled_key, arm_unit
+             motion_upper_bulk, motion_interference, motion_wear, user_motions, bulk_motions, control_keep, control_force, &
+             control_displacement, controlled_key, first_control, arm_unit
 
    !> Approach (down), shift (to the right) and rotation (counterclockwise) of the upper body; the bulk stress of either body; the
-   !> growth of the gap by wear in a block of cycles, from 0 to 1; and the number of motions.
+   !> interference, by which one body is larger; the growth of the gap by wear in a block of cycles, from 0 to 1; and the number of
+   !> motions.
    integer, parameter :: motion_approach = 1, motion_shift = 2, motion_rotation = 3, motion_lower_bulk = 4, motion_upper_bulk = 5, &
-                         motion_wear = 6, motion_count = 6
+                         motion_interference = 6, motion_wear = 7, motion_count = 7
    !> The first motions are those of the user, in steps, results and interfaces.
-   integer, parameter :: user_motions = 5
+   integer, parameter :: user_motions = 6
 
    !> The bulk stress of the lower and the upper body.
    integer, parameter :: bulk_motions(2) = [motion_lower_bulk, motion_upper_bulk]
@@ -42,7 +43,7 @@ module mfv_motions
       !> The residual of its balance with the tractions, and its meaning.
       character(len=26) :: balance
       character(len=40) :: balance_meaning
-      !> Whether the force cannot be negative.
+      !> Whether its force cannot be negative, or its value if that is always prescribed.
       logical :: pushes = .false.
       !> Whether its arms are lengths, so that its force is a moment (wear: an energy).
       logical :: turns = .false.
@@ -50,7 +51,8 @@ module mfv_motions
       logical :: optional = .false.
       !> Whether it is a bulk stress.
       logical :: is_stress = .false.
-      !> Whether it is always prescribed, by its value, and changes gaps only or slips only: a bulk stress, wear.
+      !> Whether it is always prescribed, by its value, and changes gaps only or slips only: a bulk stress, an interference,
+      !> wear.
       logical :: is_known = .false.
    end type motion_type
 
@@ -93,6 +95,14 @@ module mfv_motions
                                    force_target='', balance='upper_contraction_balance', &
                        balance_meaning='contraction - that by the tractions', optional=.true., is_stress=.true., is_known=.true.), &
                                    motion_type( &
+                    key='interference', force_key='closing_force', force_name='closing force', unit='length', &
+                                   force_unit='force/length', meaning='interference: distance by which it closes all gaps', &
+                                   force_meaning='sum of the pressure along the surface, conjugate to the interference', &
+                                   target='target of the interference: by how much the radius of a pin exceeds that of its '// &
+                                   'bore, or a pad is higher than its place; closes all gaps', &
+                                   force_target='', balance='closing_force_balance', &
+                        balance_meaning='closing force - sum of the pressure', pushes=.true., optional=.true., is_known=.true.), &
+                                   motion_type( &
                                    key='wear', force_key='wear_energy', force_name='energy of wear', unit='1', &
                                    force_unit='force', meaning='part of the wear of a block of cycles', &
                                    force_meaning='elastic energy that all wear of the block releases, with its sign reversed', &
@@ -109,6 +119,13 @@ contains
       controlled_key = motions(motion)%key
       if (control == control_force) controlled_key = motions(motion)%force_key
    end function controlled_key
+
+   !> The first control by which a step can prescribe a motion: its force, or its value if that is always prescribed.
+   elemental integer function first_control(motion)
+      integer, intent(in) :: motion
+
+      first_control = merge(control_displacement, control_force, motions(motion)%is_known)
+   end function first_control
 
    !> Unit of the arms of a motion: 1; `length` for a moment; `length` over `modulus`, force/length^2, for a bulk stress.
    elemental real(wp) function arm_unit(motion, length, modulus)

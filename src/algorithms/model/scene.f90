@@ -161,10 +161,13 @@ module mfv_scene
       procedure :: arc_radius
       procedure :: x_of_arc
       procedure :: x_in_period
+      procedure :: is_neat
+      procedure :: repeat_length
       procedure :: repeats_beyond
       procedure :: touchable
       procedure :: last_touchable
       procedure :: can_have_bulk_stress
+      procedure :: can_interfere
       procedure :: can_repeat
       procedure :: interior
    end type scene_type
@@ -439,13 +442,31 @@ contains
       if (radius > 0.0_wp) x = radius*sin(arc/radius)
    end function x_of_arc
 
-   !> Whether an arc length is an end of the period, beyond which the surfaces repeat.
+   !> Whether a disk and its hole have one radius, so that they touch all around.
+   pure logical function is_neat(self)
+      class(scene_type), intent(in) :: self
+
+      is_neat = self%mesh%radial .and. self%lower%circular() .and. self%upper%circular() .and. &
+                .not. abs(self%curvature()) > 0.0_wp
+   end function is_neat
+
+   !> Arc length after which both surfaces repeat: the period, the circumference of a neat fit, or 0.
+   pure real(wp) function repeat_length(self) result(length)
+      class(scene_type), intent(in) :: self
+
+      length = self%mesh%period
+      if (self%is_neat()) length = 2.0_wp*pi*self%arc_radius()
+   end function repeat_length
+
+   !> Whether an arc length is an end of the mesh beyond which the surfaces repeat.
    elemental logical function repeats_beyond(self, arc)
       class(scene_type), intent(in) :: self
       real(wp), intent(in) :: arc
 
-      repeats_beyond = self%mesh%period > 0.0_wp .and. &
-                       abs(arc - self%mesh%middle) > 0.5_wp*self%mesh%period*(1.0_wp - visible)
+      real(wp) :: length
+
+      length = self%repeat_length()
+      repeats_beyond = length > 0.0_wp .and. abs(arc - self%mesh%middle) > 0.5_wp*length*(1.0_wp - visible)
    end function repeats_beyond
 
    !> The same x, length, or its image in the period about the origin.
@@ -457,12 +478,12 @@ contains
       if (self%mesh%period > 0.0_wp) image = x - self%mesh%period*anint(x/self%mesh%period)
    end function x_in_period
 
-   !> Whether both bodies have a surface at an arc length (length) from the origin of x: on a circle up to 90 degrees; with radial
-   !> normals, where the radius of the hole meets the disk; of surfaces that repeat within one period.
+   !> Whether both bodies have a surface at an arc length (length) from the origin of x: on a circle up to 90 degrees, with radial
+   !> normals up to 180, where the radius of the hole meets the disk; of surfaces that repeat, and of a neat fit, within one length.
    elemental logical function touchable(self, arc)
       class(scene_type), intent(in) :: self
       real(wp), intent(in) :: arc
-      real(wp) :: radius, x
+      real(wp) :: radius, x, length
 
       radius = self%arc_radius()
       x = self%x_in_period(self%x_of_arc(arc))
@@ -471,8 +492,12 @@ contains
       else
          touchable = self%lower%covers(x, self%mesh%parabolic) .and. self%upper%covers(x, self%mesh%parabolic)
       end if
-      if (radius > 0.0_wp) touchable = touchable .and. abs(arc) < 0.5_wp*pi*radius
-      if (self%mesh%period > 0.0_wp) touchable = touchable .and. abs(arc - self%mesh%middle) < 0.5_wp*self%mesh%period
+      length = self%repeat_length()
+      if (length > 0.0_wp) then
+         touchable = touchable .and. abs(arc - self%mesh%middle) < 0.5_wp*length
+      else if (radius > 0.0_wp) then
+         touchable = touchable .and. abs(arc) < merge(pi, 0.5_wp*pi, self%mesh%radial)*radius
+      end if
    end function touchable
 
    !> `outside`, or the end of the surface between it and `inside` (by bisection); arc lengths.
@@ -510,6 +535,13 @@ contains
       end if
    end function can_have_bulk_stress
 
+   !> Whether an interference can close all gaps: with vertical normals, or between a disk and a hole of one radius.
+   pure logical function can_interfere(self)
+      class(scene_type), intent(in) :: self
+
+      can_interfere = self%is_neat() .or. .not. self%mesh%radial
+   end function can_interfere
+
    !> Whether a motion displaces surfaces that repeat alike in every period: not a rotation or a bulk stress.
    pure logical function can_repeat(self, motion)
       class(scene_type), intent(in) :: self
@@ -546,7 +578,8 @@ contains
             zones%sharp(side, i) = ends_with_body(self, arc, width, zones%contact(side, i), 2*side - 3)
          end do
       end do
-      zones%joined = self%mesh%period > 0.0_wp
+      zones%period = ratio*self%repeat_length()
+      zones%joined = zones%period > 0.0_wp
       if (zones%joined) zones%joined = all(self%repeats_beyond(pack(zones%contact, zones%sharp)))
       zones%contact = ratio*zones%contact
       if (self%coupling == coupling_full) zones%pair = self%near_field()

@@ -407,7 +407,7 @@ contains
       type(constraints_type), intent(inout) :: constraints
       logical, intent(out) :: ready
       type(error_type), allocatable, intent(out) :: error
-      logical :: contact, slides, relaxing
+      logical :: contact, slides, lifted, relaxing
       integer :: i
 
       ready = .true.
@@ -427,7 +427,9 @@ contains
 
       constraints%one_by_one = .true.
       slides = .not. any(holds(self%state%status))
-      if (slides .and. constraints%load(motion_shift)%control == control_force) then
+      ! Where normals of slipping nodes are inclined, pressure determines the shift.
+      lifted = self%model%lifts(motion_shift) .and. any(slips(self%state%status)) .and. self%state%contact_nodes() > 1
+      if (slides .and. .not. lifted .and. constraints%load(motion_shift)%control == control_force) then
          call hold_motion(self, constraints, motion_shift, ready, error)
          if (allocated(error) .or. .not. ready) return
       end if
@@ -486,7 +488,7 @@ contains
       constraints%load(motion) = load_type(control_displacement, self%state%fields%motion(motion), 0.0_wp)
       arm = self%model%unit_of_arm(motion)
       negligible = none*self%certificate%force_scale(motion_approach)*arm
-      pressed = self%state%fields%force(motion_approach) > none*self%certificate%force_scale(motion_approach)
+      pressed = self%model%force(self%state%fields%pressure) > none*self%certificate%force_scale(motion_approach)
       if (.not. any(slips(self%state%status))) then
          if (abs(wanted) > max(significant*self%state%fields%force(motion_approach)*arm, negligible)) &
             call self%end_here(merge(MFV_GROSS_SLIDING, MFV_SEPARATED, pressed), &
@@ -523,7 +525,7 @@ contains
    end subroutine hold_motion
 
    !> Force control without contact: move the upper body, without load, until its nearest nodes touch. Together touch nodes whose
-   !> gaps agree within the round-off of the largest gap, and to a part `alike`: the gaps beside a flat tip differ by much less than
+   !> gaps agree within the round-off of the largest gap and of the displacements so far, and to a part `alike`: the gaps beside a flat tip differ by much less than
    !> that round-off, and the positions of graded meshes are less accurate than their gaps are small.
    subroutine close_nearest(self, segment, iteration)
       class(contact_path_type), intent(inout) :: self
@@ -544,7 +546,8 @@ contains
       if (allocated(self%derivatives)) call self%derivatives%touch(self%model, minloc(gap, mask=self%model%can_touch, dim=1))
       call refresh_derivatives(self)
       smallest = minval(gap, mask=self%model%can_touch)
-      round_off = 8*epsilon(1.0_wp)*max(maxval(abs(self%model%initial_gap)), abs(self%state%fields%motion(motion_approach)))
+      round_off = 8*epsilon(1.0_wp)*max(maxval(abs(self%model%initial_gap)), abs(self%state%fields%motion(motion_approach)), &
+                                        self%certificate%normal)
       terms = self%model%gap_terms(self%state%fields)
       touching = self%model%can_touch .and. gap - smallest <= min(round_off, alike*terms)
       status = status_after(event_close, node_open, segment%friction .and. self%model%tangential, 0, &

@@ -20,8 +20,6 @@ module mfv_body_reader
    private
    public :: check_bodies, read_body, check_pair, check_matrix, read_datums
 
-   !> Clearance of a neat fit, over the radius: a smaller one changes the contact by less than 1e-4 of it.
-   real(wp), parameter :: neat_clearance = 1.0e-8_wp
 
    real(wp), parameter :: degree = pi/180.0_wp
    !> Keys of an orthotropic material, in the order of new_orthotropic_material; three of them not in plane stress.
@@ -458,7 +456,7 @@ contains
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(in) :: scene
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: radius
+      real(wp) :: radius, excess
       integer :: hole, shapes(2)
 
       shapes = [scene%lower%shape, scene%upper%shape]
@@ -467,10 +465,17 @@ contains
          hole = findloc(shapes, shape_hole, dim=1)
          if (scene%curvature() > 0.0_wp) return
          if (any(shapes == shape_disk)) then
+            if (scene%is_neat()) return
             radius = merge(scene%upper%radius, scene%lower%radius, hole == 1)
-          call reader%complain('body', hole, 'radius', 'must be above the radius of the disk in it, '//to_text(radius)//'; for '// &
-                                 'a neat fit give a clearance of 1e-8 of it, radius='// &
-                                 to_text(radius*(1.0_wp + neat_clearance), 12), error)
+            excess = radius - merge(scene%lower%radius, scene%upper%radius, hole == 1)
+            if (excess > 0.0_wp) then
+               call reader%complain('body', hole, 'radius', 'must be at least the radius of the disk in it, '//to_text(radius)// &
+                                    "; for a larger pin give both that radius, normals='radial' in &mesh, and in a step "// &
+                                    'interference='//to_text(excess, 3), error)
+            else
+               call reader%complain('body', hole, 'radius', 'is that of the disk in it; such a neat fit needs '// &
+                                    "normals='radial' in &mesh", error)
+            end if
          else
             call reader%complain('body', hole, 'radius', 'a hole needs a disk of smaller radius inside it', error)
          end if

@@ -8,7 +8,8 @@ module mfv_case_keys
    use mfv_keys
    use mfv_kinds, only: wp
    use mfv_material, only: plane_names
-   use mfv_motions, only: motions, motion_count => user_motions, motion_shift, control_force, control_displacement, controlled_key
+   use mfv_motions, only: motions, motion_count => user_motions, motion_shift, control_force, control_displacement, &
+                          controlled_key, first_control
    use mfv_scene, only: algorithm_names, integration_names, most_cycles, solver_names, stepping_names
    implicit none
    private
@@ -233,14 +234,18 @@ contains
 
    subroutine add_step_keys(keys)
       type(catalogue_type), intent(inout) :: keys
-      integer :: i
+      integer :: i, control
 
       do i = 1, motion_count
          associate (motion => motions(i))
-            if (.not. motion%is_stress) &
-               call keys%add('step', trim(motion%force_key), kind_real, trim(motion%force_target), unit=trim(motion%force_unit))
-            if (motion%pushes) keys%keys(keys%size)%lower = 0.0_wp
-            call keys%add('step', trim(motion%key), kind_real, trim(motion%target), unit=trim(motion%unit))
+            do control = first_control(i), control_displacement
+               if (control == control_force) then
+                  call keys%add('step', trim(motion%force_key), kind_real, trim(motion%force_target), unit=trim(motion%force_unit))
+               else
+                  call keys%add('step', trim(motion%key), kind_real, trim(motion%target), unit=trim(motion%unit))
+               end if
+               if (motion%pushes .and. control == first_control(i)) keys%keys(keys%size)%lower = 0.0_wp
+            end do
          end associate
          if (i == motion_shift) call keys%add('step', 'force_ratio', kind_real, 'target Q/(mu P) instead of '// &
                                               'tangential_force: mu the largest coefficient of &friction, P the normal_force '// &
@@ -263,10 +268,10 @@ contains
                     'columns with the names of these keys in the first line, and a row for every turning point; a column '// &
                     'time is ignored; path relative to the case file')
       do i = 1, motion_count
-         do control = merge(control_displacement, control_force, motions(i)%is_stress), control_displacement
+         do control = first_control(i), control_displacement
             name = controlled_key(i, control)
             call add_history_key(trim(name), trim(merge(motions(i)%force_unit//'  ', motions(i)%unit, control == control_force)))
-            if (control == control_force .and. motions(i)%pushes) keys%keys(keys%size)%lower = 0.0_wp
+            if (control == first_control(i) .and. motions(i)%pushes) keys%keys(keys%size)%lower = 0.0_wp
          end do
          if (i == motion_shift) call add_history_key('force_ratio', '')
       end do

@@ -116,7 +116,7 @@ contains
 
       do i = 1, user_motions
          if (key == motions(i)%key) parameter%control = control_displacement
-         if (key == motions(i)%force_key .and. .not. motions(i)%is_stress) parameter%control = control_force
+         if (key == motions(i)%force_key .and. .not. motions(i)%is_known) parameter%control = control_force
          if (parameter%control /= 0) exit
       end do
       parameter%motion = i

@@ -15,7 +15,7 @@ module mfv_case_reader
    use mfv_namelist, only: group_type, parse_namelists
    use mfv_scene
    use mfv_simulation, only: states_steps
-   use mfv_step_reader, only: read_steps
+   use mfv_step_reader, only: check_held, read_steps
    use mfv_text_file, only: directory_of, read_text
    implicit none
    private
@@ -114,12 +114,14 @@ contains
       call check_bodies(reader, error)
       if (.not. allocated(error)) call read_body(reader, 1, scene%plane, scene%lower, error)
       if (.not. allocated(error)) call read_body(reader, 2, scene%plane, scene%upper, error)
+      scene%mesh%radial = reader%text_value('mesh', 1, 'normals') == 'radial'
       if (.not. allocated(error)) call check_pair(reader, scene, error)
       if (.not. allocated(error)) call read_period(reader, scene, error)
       if (allocated(error)) return
       call read_friction(reader, scene, error)
       if (.not. allocated(error)) call read_steps(reader, scene, error)
       if (.not. allocated(error)) call read_history(reader, scene, error)
+      if (.not. allocated(error)) call check_held(reader, scene, error)
       if (.not. allocated(error)) call read_wear(reader, scene, error)
       if (.not. allocated(error)) call read_datums(reader, scene, error)
       if (.not. allocated(error)) call check_matrix(reader, scene, error)

@@ -31,7 +31,6 @@ contains
       scene%mesh%nodes = reader%integer_value('mesh', 1, 'nodes')
       scene%mesh%half_width = reader%real_value('mesh', 1, 'half_width')
       scene%mesh%parabolic = reader%text_value('mesh', 1, 'gap') == 'parabolic'
-      scene%mesh%radial = reader%text_value('mesh', 1, 'normals') == 'radial'
       if (reader%has('mesh', 1, 'gap') .and. .not. (scene%lower%circular() .or. scene%upper%circular())) then
          call reader%complain('mesh', 1, 'gap', 'has no effect without a disk or hole; remove it', error)
       else if (scene%mesh%radial .and. .not. (scene%lower%circular() .and. scene%upper%circular() .and. &
@@ -51,6 +50,8 @@ contains
          call reader%complain('mesh', 1, keys(i)%text, 'has no effect for a matrix, which has its own nodes; remove it', error)
          return
       end do
+      if (scene%is_neat()) call check_neat(reader, error)
+      if (allocated(error)) return
       scene%mesh%refined = reader%text_value('mesh', 1, 'refine') == 'edges'
       scene%mesh%nodes_by_accuracy = program_chooses_nodes(reader, scene)
       if ((scene%lower%is_sampled() .or. scene%upper%is_sampled()) .and. &
@@ -80,6 +81,24 @@ contains
       if (.not. allocated(error)) call check_circle(reader, 1, scene, scene%lower, error)
       if (.not. allocated(error)) call check_circle(reader, 2, scene, scene%upper, error)
    end subroutine read_mesh
+
+   !> Error for keys without effect in a neat fit, whose intervals cover the circle.
+   subroutine check_neat(reader, error)
+      type(reader_type), intent(in) :: reader
+      type(error_type), allocatable, intent(out) :: error
+      type(string_type), allocatable :: keys(:)
+      integer :: i
+
+      keys = list_of_words('half_width half_angle ends')
+      do i = 1, size(keys)
+         if (reader%has('mesh', 1, keys(i)%text)) &
+            call reader%complain('mesh', 1, keys(i)%text, 'has no effect in a neat fit, whose equal intervals cover the '// &
+                                 'circle; remove it', error)
+         if (allocated(error)) return
+      end do
+      if (reader%text_value('mesh', 1, 'refine') == 'edges') &
+         call reader%complain('mesh', 1, 'refine', "must be 'none' in a neat fit, whose equal intervals cover the circle", error)
+   end subroutine check_neat
 
    !> The period of surfaces that repeat, which loads and datums depend on. Both bodies deform like half-planes.
    subroutine read_period(reader, scene, error)
@@ -168,9 +187,11 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(string_type), allocatable :: others(:)
       real(wp), allocatable :: ends(:)
+      real(wp) :: reach
       integer :: i, place
 
       others = list_of_words('nodes half_width half_angle')
+      reach = merge(pi, 0.5_wp*pi, scene%mesh%radial)*scene%arc_radius()
       do i = 1, size(others)
          if (.not. reader%has('mesh', 1, others(i)%text)) cycle
          call reader%complain('mesh', 1, others(i)%text, 'has no effect with ends; remove one of them', error)
@@ -188,9 +209,9 @@ contains
                               to_text(ends(place + 1))//', is not above the one before it, '//to_text(ends(place)), error)
       else if (scene%mesh%period > 0.0_wp .and. maxval(abs(ends)) > 0.5_wp*scene%mesh%period*(1.0_wp + significant)) then
          call reader%complain('mesh', 1, 'ends', 'must be within half a period, '//to_text(0.5_wp*scene%mesh%period), error)
-      else if (maxval(abs(ends)) > 0.5_wp*pi*scene%arc_radius() .and. scene%arc_radius() > 0.0_wp) then
-         call reader%complain('mesh', 1, 'ends', 'must not be beyond a quarter of the circle, '// &
-                              to_text(0.5_wp*pi*scene%arc_radius()), error)
+      else if (maxval(abs(ends)) > reach .and. scene%arc_radius() > 0.0_wp) then
+         call reader%complain('mesh', 1, 'ends', 'must not be beyond a '//trim(merge('half   ', 'quarter', scene%mesh%radial))// &
+                              ' of the circle, '//to_text(reach), error)
       else
          call check_kernels(reader, 'ends', scene, error)
       end if

@@ -3,13 +3,14 @@ module mfv_step_reader
    use mfv_error, only: error_type
    use mfv_key_reader
    use mfv_kinds, only: wp
-   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_upper_bulk, control_keep, control_force, &
-                          control_displacement, controlled_key
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_upper_bulk, motion_interference, &
+                          control_keep, control_force, control_displacement, controlled_key, &
+                          first_control
    use mfv_scene, only: scene_type, step_type
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: check_motion, last_pressing, read_steady_tolerance, read_steps
+   public :: check_held, check_motion, last_pressing, read_steady_tolerance, read_steps
 
 contains
 
@@ -41,7 +42,7 @@ contains
             if (all(step%control == control_keep)) then
                call fail(reader, line_of(reader, 'step', i), '&step '//to_text(i)//': needs a target: normal_force or '// &
                          'approach, tangential_force, force_ratio or shift, moment or rotation, lower_bulk_stress, '// &
-                         'upper_bulk_stress', error)
+                         'upper_bulk_stress, interference', error)
                return
             end if
          end associate
@@ -90,7 +91,7 @@ contains
 
       control = control_keep
       target = 0.0_wp
-      do i = merge(control_displacement, control_force, motions(motion)%is_stress), control_displacement
+      do i = first_control(motion), control_displacement
          if (.not. reader%has('step', number, trim(controlled_key(motion, i)))) cycle
          if (control /= control_keep) then
             call reader%complain('step', number, trim(motions(motion)%key), trim(motions(motion)%force_key)// &
@@ -119,6 +120,10 @@ contains
          call reader%complain(group, number, key, 'has no effect that repeats with the period in &mesh; remove one of them', error)
          return
       end if
+      if (motion == motion_interference) then
+         call check_interference(reader, group, number, key, scene, error)
+         return
+      end if
       upper = motion == motion_upper_bulk
       if (.not. motions(motion)%is_stress .or. scene%can_have_bulk_stress(upper)) return
       body = merge(2, 1, upper)
@@ -128,6 +133,39 @@ contains
       call reader%complain(group, number, key, 'the '//merge('upper', 'lower', upper)//' body is a '// &
                            kind//'; a bulk stress needs an elastic half_plane, wedge, power, rounded_punch or profile', error)
    end subroutine check_motion
+
+   !> Error for an interference of circles that are not a neat fit.
+   subroutine check_interference(reader, group, number, key, scene, error)
+      type(reader_type), intent(in) :: reader
+      character(*), intent(in) :: group, key
+      integer, intent(in) :: number
+      type(scene_type), intent(in) :: scene
+      type(error_type), allocatable, intent(out) :: error
+
+      if (scene%can_interfere()) return
+      call reader%complain(group, number, key, 'needs a disk and a hole of one radius, not of '//to_text(scene%lower%radius)// &
+                           ' and '//to_text(scene%upper%radius)//': the interference is by how much the pin is larger', error)
+   end subroutine check_interference
+
+   !> Error for an interference with vertical normals in a case that does not prescribe the approach: at a given normal force the
+   !> upper body would only be lifted.
+   subroutine check_held(reader, scene, error)
+      type(reader_type), intent(in) :: reader
+      type(scene_type), intent(in) :: scene
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i, control
+
+      if (scene%mesh%radial) return
+      control = control_force
+      do i = 1, size(scene%steps)
+         if (scene%steps(i)%control(motion_approach) /= control_keep) control = scene%steps(i)%control(motion_approach)
+         if (control == control_displacement .or. scene%steps(i)%control(motion_interference) == control_keep) cycle
+         call reader%complain(merge('history', 'step   ', scene%steps(i)%row > 0), merge(1, i, scene%steps(i)%row > 0), &
+                              'interference', 'needs a prescribed approach, which holds the upper body in its place, such as '// &
+                              'approach=0.0; at a given normal_force it would only be lifted', error)
+         return
+      end do
+   end subroutine check_held
 
    !> The tolerance of a step with cycles, from its key in a group. Error for one without effect.
    subroutine read_steady_tolerance(reader, group, number, step, error)
