@@ -11,7 +11,7 @@ module mfv_contact
    use mfv_contact_state, only: contact_state_type
    use mfv_discretisation_error, only: estimate_error, has_coarser_meshes
    use mfv_motions, only: motions, motion_count, user_motions, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
-                          motion_upper_bulk, motion_interference, control_keep, control_force, control_displacement, first_control
+                          motion_upper_bulk, motion_interference, control_keep, control_force, control_displacement
    use mfv_derivatives, only: parameter_type
    use mfv_sensitivity, only: find_sensitivity
    use mfv_draft, only: draft_type
@@ -470,8 +470,10 @@ contains
       logical :: strains(motion_count)
 
       strains = motions%is_stress .and. step%control /= control_keep
-      wrong = findloc(motions%pushes .and. step%control == first_control([(i, i=1, motion_count)]) .and. step%target < 0.0_wp, &
-                      .true., dim=1)
+      wrong = findloc(motions%pushes .and. step%control == control_force .and. step%target < 0.0_wp, .true., dim=1)
+      if (scene%is_neat()) wrong = 0
+      if (step%control(motion_interference) == control_displacement .and. step%target(motion_interference) < 0.0_wp) &
+         wrong = motion_interference
       if (any(step%control == control_both)) then
          call set_error(error, MFV_BAD_ARGUMENT, 'prescribe either the force or the displacement of a direction, not both')
       else if (any(step%control < control_keep .or. step%control > control_displacement)) then

@@ -14,7 +14,7 @@ module mfv_load_extremes
    use mfv_interior, only: has_interior, interior_type, von_mises_stress
    use mfv_interior_half_plane, only: line_load_stress, surface_stress_of
    use mfv_kinds, only: pi, wp
-   use mfv_motions, only: bulk_motions, motion_approach, motion_count
+   use mfv_motions, only: bulk_motions, motion_approach, motion_shift, motion_count
    use mfv_node_status, only: in_contact
    use mfv_state_interior, only: state_interior
    use mfv_stress_search, only: estimate_in_layers, find_largest_at_interfaces, largest_type
@@ -284,6 +284,13 @@ contains
 
    contains
 
+      !> 1 for a hole, which a uniform pressure stretches, -1 for a disk.
+      pure real(wp) function side_of_hole(body)
+         type(body_type), intent(in) :: body
+
+         side_of_hole = merge(1.0_wp, -1.0_wp, body%is_hole())
+      end function side_of_hole
+
       subroutine add_body(body, side)
          type(body_type), intent(in) :: body
          integer, intent(in) :: side
@@ -298,9 +305,12 @@ contains
          associate (period => model%scene%mesh%period)
             if (period > 0.0_wp) bulk = body%elasticity%material%lateral_ratio()*sum(state%fields%pressure*model%width)/period
          end associate
-         ! A circle is in tension also beside a contact without shear, in proportion to the force.
+         ! A circle is in tension also beside a contact without shear, in proportion to the force; around a neat fit by the mean
+         ! pressure.
          hoop = 0.0_wp
          if (body%deforms_as_circle()) hoop = state%fields%force(motion_approach)/(pi*body%radius)
+         if (model%scene%is_neat()) hoop = (norm2(state%fields%force(:motion_shift)) &
+                                            + 0.5_wp*side_of_hole(body)*model%force(state%fields%pressure))/(pi*body%radius)
          sign = merge(1.0_wp, -1.0_wp, side == 1)
          associate (stress => bulk + surface_stress_of(body%elasticity%material, samples%pressure, sign*samples%shear, &
                                                        samples%of_pressure, sign*samples%of_shear))

@@ -42,6 +42,8 @@ module mfv_zone_edges
       !> Whether the patch ends with the surface of a body, or with an interval there, where the pressure may be singular. At other
       !> edges it vanishes as the distance to the power `left_power` or `right_power`.
       logical :: left_ends = .false., right_ends = .false.
+      !> Length after which the surfaces repeat if the patch ends there and continues in the first one, else 0.
+      real(wp) :: to_first = 0.0_wp
       real(wp) :: left_power = 0.5_wp, right_power = 0.5_wp
       !> Its stick zones from left to right; size 0 without any.
       type(zone_type), allocatable :: stick(:)
@@ -126,14 +128,14 @@ contains
       edges = outermost_edges(patches)
    end subroutine find_zone_edges
 
-   !> The outermost edges and total lengths of patches.
+   !> The outermost edges and total lengths of patches. What spans an end of a period is one patch.
    pure type(zone_edges_type) function outermost_edges(patches) result(edges)
       type(patch_type), intent(in) :: patches(:)
       integer :: i, j
 
+      edges%contact = size(patches) > 0
       edges%patches = size(patches)
-      edges%contact = edges%patches > 0
-      do i = 1, edges%patches
+      do i = 1, size(patches)
          if (i == 1) edges%contact_left = patches(i)%left
          edges%contact_right = patches(i)%right
          edges%contact_length = edges%contact_length + patches(i)%length()
@@ -146,6 +148,14 @@ contains
             end associate
          end do
       end do
+      if (.not. edges%contact) return
+      associate (last => patches(size(patches)))
+         if (.not. last%to_first > 0.0_wp) return
+         edges%patches = edges%patches - 1
+         if (edges%patches > 1) return
+         edges%contact_left = last%left
+         edges%contact_right = patches(1)%right + last%to_first
+      end associate
    end function outermost_edges
 
    !> The contact patches in a state, from left to right. Where tractions cannot be extrapolated (few nodes, sharp corners,
@@ -174,6 +184,11 @@ contains
          patches(i - 1)%right = 0.5_wp*(patches(i - 1)%right + patches(i)%left)
          patches(i)%left = patches(i - 1)%right
       end do
+      i = size(patches)
+      if (i > 1) then
+         if (model%scene%repeats_beyond(patches(1)%left) .and. model%scene%repeats_beyond(patches(i)%right)) &
+            patches(i)%to_first = model%scene%repeat_length()
+      end if
       zones = zones_of(held(state))
       do i = 1, size(patches)
          call find_stick_zones(model, state, pack(zones, zones%first >= patches(i)%first .and. zones%last <= patches(i)%last), &

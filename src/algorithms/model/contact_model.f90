@@ -437,11 +437,13 @@ contains
       end do
    end function moved
 
-   !> Further approach of the upper body until the nearest node closes its `gap`, length.
+   !> Further approach of the upper body until the nearest node closes its `gap`, length; none in a neat fit, which touches.
    pure real(wp) function nearest_approach(self, gap)
       class(contact_model_type), intent(in) :: self
       real(wp), intent(in) :: gap(:)
 
+      nearest_approach = 0.0_wp
+      if (self%scene%is_neat()) return
       nearest_approach = minval(gap/max(self%normal_arm(:, motion_approach), tiny(1.0_wp)), mask=self%can_touch)
    end function nearest_approach
 

@@ -417,7 +417,7 @@ contains
       call self%set_rows(constraints, relaxing)
       contact = any(in_contact(self%state%status))
       if (.not. contact .and. constraints%load(motion_approach)%control == control_force) then
-         if (constraints%load(motion_approach)%rate > 0.0_wp) then
+         if (constraints%load(motion_approach)%rate > 0.0_wp .or. (self%model%scene%is_neat() .and. loads_any(constraints))) then
             call self%close_nearest(segment, iteration)
             ready = .false.
             return
@@ -439,6 +439,15 @@ contains
          if (allocated(error) .or. .not. ready) return
       end do
    end subroutine find_constraints
+
+   !> Whether a force that is to change would press a neat fit together, in whatever direction.
+   pure logical function loads_any(constraints)
+      type(constraints_type), intent(in) :: constraints
+
+      associate (load => constraints%load([motion_approach, motion_shift]))
+         loads_any = any(load%control == control_force .and. abs(load%rate) > 0.0_wp)
+      end associate
+   end function loads_any
 
    !> Hold a motion with a prescribed force (such as the rotation under a moment) if nothing determines it: with fewer than two
    !> nodes in contact, where only a zero force is possible; or if no node sticks and the motion only slides.
