@@ -140,7 +140,7 @@ contains
       else
          self%kernels = exact_kernels(self%body, self%material%kolosov, self%interval/self%radius, nodes)
       end if
-      self%kernels%tangential = self%kernels%tangential + rotation_of_rim(self, self%interval)
+      self%kernels%tangential = self%kernels%tangential + rotation_of_disk(self, self%interval)
       call set_cross(self)
       self%operator(by_normal) = new_toeplitz(self%kernels%radial, self%cross(:, by_normal), self%kernels%tangential)
       self%operator(by_shear) = self%operator(by_normal)
@@ -171,7 +171,7 @@ contains
 
       call exact_values(self%body, self%material%kolosov, abs(distance)/self%radius, width/self%radius, &
                         kernels(radial_kernel), kernels(cross_by_normal), kernels(tangential_kernel))
-      kernels(tangential_kernel) = kernels(tangential_kernel) + rotation_of_rim(self, width)
+      kernels(tangential_kernel) = kernels(tangential_kernel) + rotation_of_disk(self, width)
       kernels(cross_by_shear) = kernels(cross_by_normal)
       if (self%radial .and. .not. self%elastic_block(block_wt)) then
          dissimilar = exact_cross_of_dissimilar(self%material%kolosov, abs(distance)/self%radius, width/self%radius)
@@ -181,15 +181,15 @@ contains
       kernels(cross) = sign(1.0_wp, distance)*kernels(cross)
    end subroutine kernels_at
 
-   !> Rotation of a disk with radial normals, times G, by a unit shear traction on an interval of the length `width`, that puts the
-   !> mean rotation of its rim to zero: the moment at its centre turns that by an infinite angle. (In the kernels the plane far
-   !> from such a moment does not rotate: in a pair of one material all around the uniform shear would displace nothing.)
-   pure real(wp) function rotation_of_rim(self, width)
+   !> Rotation of a disk with radial normals, times G, by a unit shear traction on an interval of the length `width`, that holds the
+   !> circle of half its area: the moment at its centre turns that by an infinite angle. Uniform shear then displaces the rims of
+   !> disk and hole alike, each along its traction. (Without it they move together, so that nothing resists such a shear all around.)
+   pure real(wp) function rotation_of_disk(self, width)
       class(circle_type), intent(in) :: self
       real(wp), intent(in) :: width
 
-      rotation_of_rim = merge(width/(4.0_wp*pi*self%radius), 0.0_wp, self%radial .and. self%body == body_disk)
-   end function rotation_of_rim
+      rotation_of_disk = merge(width/(2.0_wp*pi*self%radius), 0.0_wp, self%radial .and. self%body == body_disk)
+   end function rotation_of_disk
 
    !> The cross kernels by normal and by shear traction.
    subroutine set_cross(self)

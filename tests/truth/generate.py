@@ -10,11 +10,12 @@ import numpy as np
 
 from .problem import Keys, Problem
 
-#: From these seeds on some bodies are anisotropic, most surfaces repeat, and most bodies have layers; the numbers of smaller seeds do not
-#: change.
+#: From these seeds on some bodies are anisotropic, most surfaces repeat, most bodies have layers, and pins are pressed into bores; the
+#: numbers of smaller seeds do not change.
 ANISOTROPIC = 200_000
 PERIODIC = 300_000
 LAYERED = 400_000
+FITS = 500_000
 
 
 class Draw:
@@ -56,6 +57,8 @@ class Sizes:
 
 def problem(seed: int) -> Problem:
     """The problem of a seed."""
+    if seed >= FITS:
+        return _fit(Draw(seed))
     draw, sizes = Draw(seed), Sizes()
     made = Problem([("scene", {})])
     scene = made.one("scene")
@@ -78,6 +81,74 @@ def problem(seed: int) -> Problem:
     smooth = made.labels["shape"] in ("cylinder", "disks", "hole", "power", "rounded")
     made.ordinary = smooth and law in ("none", "coulomb") and not made.has("wear")
     return made
+
+
+def _fit(draw: Draw) -> Problem:
+    """A pin in a bore of its radius, with or without interference, under loads in all directions."""
+    sizes = Sizes()
+    made = Problem([("scene", {"coupling": draw.one_of(full=0.6, goodman=0.2, none=0.2)})])
+    if draw.chance(0.25):
+        made.one("scene")["plane"] = "stress"
+    plane = made.one("scene").get("plane", "strain")
+    radius = sizes.half_width = draw.power(-3, 3)
+    bodies: list[Keys] = [{"shape": "hole", "radius": radius}, {"shape": "disk", "radius": radius}]
+    rigid = draw.whole(0, 1) if draw.chance(0.25) else None
+    alike = _material(draw) if draw.chance(0.3) else None
+    for number, body in enumerate(bodies):
+        body.update({"rigid": True} if number == rigid else alike or _material(draw))
+    sizes.modulus = 2 / sum(compliance(body, plane) for body in bodies)
+    strain = draw.power(-4, -2)
+    is_pressed = draw.chance(0.65)
+    pressure = 0.5 * strain * sizes.modulus
+    sizes.force = radius * pressure * draw.between(0.3, 4.0)
+    sizes.datum, sizes.approach = radius, sizes.force / sizes.modulus
+    if draw.chance(0.4):
+        bodies.reverse()
+    made.groups += [("body", body) for body in bodies]
+    made.labels["shape"] = "fit"
+    law = _add_friction(draw, made, sizes)
+    grip = sizes.mu * (sizes.force + (2 * np.pi * radius * pressure if is_pressed else 0.0))
+    if is_pressed:
+        made.groups.append(("step", {"interference": strain * radius}))
+        if law != "none" and draw.chance(0.3):
+            made.groups[-1][1]["friction"] = False
+    loads = _add_loads_of_fit(draw, made, sizes, grip * draw.between(0.1, 0.6))
+    made.groups.append(("mesh", {"normals": "radial", "nodes": draw.whole(24, 36) if law in ("dahl", "weakening") else draw.whole(40, 90)}))
+    _add_solver(draw, made, law, "given")
+    made.one("output").update(states="steps", history="steps", error_estimate=True)
+    made.labels.update(law=law, loads=loads, mesh="fit")
+    made.ordinary = law in ("none", "coulomb")
+    return made
+
+
+def _add_loads_of_fit(draw: Draw, made: Problem, sizes: Sizes, shear: float) -> str:
+    """A force, then one kind of load history; `shear`: a tangential force that does not slide everything."""
+    down = sizes.force * (-1 if draw.chance(0.25) else 1)
+    made.groups.append(("step", {"normal_force": down}))
+    kind = draw.one_of(press=1, shear=2, torque=2, cycles=3, rotating=2, release=1, shift=1)
+    if not made.has("friction"):
+        kind = draw.one_of(press=1, release=1)
+    radius = sizes.half_width
+    if kind == "press":
+        made.groups.append(("step", {"normal_force": down * draw.between(0.2, 2.0)}))
+    elif kind == "release":
+        made.groups.append(("step", {"normal_force": 0.0 if draw.chance(0.5) else 0.1 * down}))
+        made.groups.append(("step", {"normal_force": down}))
+    elif kind == "shear":
+        made.groups.append(("step", {"tangential_force": draw.sign() * shear}))
+    elif kind == "torque":
+        made.groups += [("step", {"moment": draw.sign() * radius * shear}), ("step", {"moment": 0.3 * radius * shear})]
+    elif kind == "shift":
+        made.groups.append(("step", {"shift": draw.sign() * shear / sizes.modulus}))
+    elif kind == "cycles":
+        name, size = ("moment", radius * shear) if draw.chance(0.3) else ("tangential_force", shear)
+        made.groups += [("step", {name: size}), ("step", {name: -size * draw.between(0.5, 1.0), "cycles": draw.whole(1, 3)})]
+    else:
+        angles = np.linspace(0, 2 * np.pi, draw.whole(6, 16))[1:]
+        table = {"normal_force": (down * np.cos(angles)).tolist(), "tangential_force": (down * np.sin(angles)).tolist()}
+        made.tables["turn.csv"] = table
+        made.groups.append(("history", {"file": "turn.csv", "cycles": draw.whole(1, 2)}))
+    return kind
 
 
 def _material(draw: Draw) -> Keys:

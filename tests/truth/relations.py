@@ -20,14 +20,14 @@ from .scales import Scales
 
 #: Loads by kind; targets that a step changes linearly.
 FORCES = ("normal_force", "tangential_force")
-LOADS = (*FORCES, "approach", "shift", "force_ratio", "moment", "rotation", "lower_bulk_stress", "upper_bulk_stress")
+LOADS = (*FORCES, "approach", "shift", "force_ratio", "moment", "rotation", "lower_bulk_stress", "upper_bulk_stress", "interference")
 #: Loads that change their sign in the mirror image, and with the picture turned upside down.
 ODD_LOADS = ("tangential_force", "shift", "force_ratio", "moment", "rotation")
 TURNED_LOADS = ("moment", "rotation")
 #: Powers of length and force in keys and columns; `coefficient` of a power depends on its exponent.
 DIMENSIONS = {
     "radius": (1, 0), "half_width": (1, 0), "edge_radius": (1, 0), "datum": (1, 0), "period": (1, 0), "ends": (1, 0), "approach": (1, 0),
-    "shift": (1, 0), "thickness": (1, 0), "weakening_distance": (1, 0), "x": (1, 0), "height": (1, 0),
+    "shift": (1, 0), "interference": (1, 0), "thickness": (1, 0), "weakening_distance": (1, 0), "x": (1, 0), "height": (1, 0),
     "shear_modulus": (-2, 1), "youngs_modulus": (-2, 1), "youngs_modulus_1": (-2, 1), "youngs_modulus_2": (-2, 1),
     "youngs_modulus_3": (-2, 1), "shear_modulus_12": (-2, 1), "compliances": (2, -1), "yield_strength": (-2, 1), "stiffness": (-3, 1),
     "normal_force": (-1, 1), "tangential_force": (-1, 1), "moment": (0, 1), "lower_bulk_stress": (-2, 1), "upper_bulk_stress": (-2, 1),
@@ -119,7 +119,8 @@ def in_pieces(problem: Problem) -> Problem | None:
     """The problem with steps divided into two halves: those without cycles whose loads at the start are known. None if no step is."""
     made = problem.copy()
     made.groups = []
-    known: dict[str, float] = dict.fromkeys(("normal_force", "tangential_force", "lower_bulk_stress", "upper_bulk_stress"), 0.0)
+    names = ("normal_force", "tangential_force", "moment", "lower_bulk_stress", "upper_bulk_stress", "interference")
+    known: dict[str, float] = dict.fromkeys(names, 0.0)
     for group, keys in problem.groups:
         targets = {key: value for key, value in keys.items() if key in LOADS}
         if group == "step" and not keys.get("cycles") and all(key in known for key in targets):

@@ -27,7 +27,7 @@ _TABLE = [
     (r"dissipation_number", "friction_squared"),
     (r"shear_number", "friction"),
     (r"tangential_force|force_amplitude", "friction_force"),
-    (r"normal_force", "normal_force"),
+    (r"normal_force|closing_force|closing_force_work", "normal_force"),
     (r"moment", "moment"),
     (r"shift|shift_drift|shift_amplitude|slip|largest_slip_range|.*tangential_displacement", "shift"),
     (r"approach|approach_drift|gap|.*normal_displacement", "approach"),
@@ -71,7 +71,7 @@ class Scales:
         friction = result.mesh.get("static_friction")
         mu = 0.0 if friction is None else float(np.max(friction))
         self.friction, self.friction_squared = mu, mu**2
-        self.normal_force = max(abs(float(step.normal_force)) for step in steps)
+        self.normal_force = max(abs(float(step[name])) for step in steps for name in ("normal_force", "closing_force") if name in step)
         self.friction_force = max(mu, SLIPPERY) * self.normal_force
         # A matrix has none.
         modulus = float(result.scene.get("contact_modulus", self.normal_force / max(abs(float(summary.approach)), 1e-300)))

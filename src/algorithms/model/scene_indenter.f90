@@ -93,8 +93,9 @@ contains
       end do
    end function half_width_of_forces
 
-   !> Default distance from the contact at which the displacements of a body are measured, length: the radius of a circle; else the
-   !> smaller length of both shapes; else the contact half-width that the closed form expects for the normal forces; else 0.
+   !> Default distance from the contact at which the displacements of a body are measured, length: the radius of a circle, in a neat
+   !> fit its diameter; else the smaller length of both shapes; else the contact half-width that the closed form expects for the
+   !> normal forces; else 0.
    !> `of_case`: whether the shapes have no length, so that it depends on the loads of this case.
    pure subroutine default_datum(scene, body, other, datum, of_case)
       type(scene_type), intent(in) :: scene
@@ -103,6 +104,7 @@ contains
       logical, intent(out) :: of_case
 
       datum = merge(body%radius, min(body%size_of_shape(), other%size_of_shape()), body%circular())
+      if (scene%is_neat()) datum = 2.0_wp*body%radius
       of_case = .not. datum < huge(1.0_wp)
       if (of_case) datum = half_width_of_forces(scene)
    end subroutine default_datum

@@ -524,6 +524,11 @@ contains
                                  'surface', error)
             return
          end if
+         if (scene%is_neat() .and. datum(number) <= scene%lower%radius) then
+            call reader%complain('body', number, 'datum', 'must be above the radius in a neat fit: a force '// &
+                                 'moves the whole surface', error)
+            return
+         end if
          if (.not. has_datum(number) .and. .not. datum(number) > 0.0_wp) datum(number) = 1.0_wp
          if (datum(number) > 0.0_wp .or. reader%logical_value('body', number, 'rigid')) cycle
          call reader%complain('body', number, 'datum', 'is needed: the shapes have no length to derive it from, and neither a '// &

@@ -15,6 +15,8 @@ module mfv_mesh_reader
 
    !> Most unequal intervals, whose compliance is a full matrix.
    integer, parameter :: most_graded = 5000
+   !> Half the circle, degrees.
+   real(wp), parameter :: half_turn = 180.0_wp
 
 contains
 
@@ -91,6 +93,7 @@ contains
 
       keys = list_of_words('half_width half_angle ends')
       do i = 1, size(keys)
+         if (keys(i)%text == 'half_angle' .and. .not. reader%real_value('mesh', 1, 'half_angle') < half_turn) cycle
          if (reader%has('mesh', 1, keys(i)%text)) &
             call reader%complain('mesh', 1, keys(i)%text, 'has no effect in a neat fit, whose equal intervals cover the '// &
                                  'circle; remove it', error)
@@ -224,7 +227,6 @@ contains
       type(reader_type), intent(in) :: reader
       type(scene_type), intent(inout) :: scene
       type(error_type), allocatable, intent(out) :: error
-      real(wp), parameter :: half_turn = 180.0_wp
       real(wp) :: half_angle
 
       half_angle = reader%real_value('mesh', 1, 'half_angle')
