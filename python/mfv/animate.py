@@ -22,6 +22,7 @@ from . import plot
 from ._packages import how_to_install
 from .load_history import kept_states
 from .result import Group, Result, counts
+from .stress import drawn_at
 from .views import LOADS, Curve, contact, curve_of, has_friction, heights, is_named, statuses
 
 #: Suffixes of files that can be written.
@@ -154,7 +155,7 @@ def _limits_of_shear(result: Result) -> tuple[float, float]:
 def _heights(result: Result) -> tuple[float, float]:
     """The lowest and the highest point of both surfaces in view."""
     left, right = contact(result)
-    in_view = (result.mesh.x >= left) & (result.mesh.x <= right)
+    in_view = (drawn_at(result) >= left) & (drawn_at(result) <= right)
     shown = [height[in_view] for state in result.steps for height in heights(result, state)]
     return float(np.nanmin(shown)), float(np.nanmax(shown))
 

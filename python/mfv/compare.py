@@ -11,6 +11,7 @@ import numpy as np
 from . import _html
 from .inputs import keys
 from .result import Group, Result
+from .stress import drawn_at
 
 #: Groups of numbers that are compared.
 GROUPS = ("summary", "observables", "certificate")
@@ -120,7 +121,7 @@ def compare(first: Result, second: Result, step: int | None = None) -> Compariso
     converted. Raises ValueError if a result has no such state.
     """
     states = first.at(step), second.at(step)
-    meshes = first.mesh.x, second.mesh.x
+    meshes = drawn_at(first), drawn_at(second)
     x = np.union1d(*meshes)
     values = {name: [np.interp(x, mesh, state[name], 0.0, 0.0) for mesh, state in zip(meshes, states)] for name in TRACTIONS}
     differences = [np.max(np.abs(one - other)) for one, other in values.values()]

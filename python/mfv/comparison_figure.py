@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 from . import plot
 from .compare import Comparison
+from .stress import drawn_at
 from .views import has_friction, heights
 
 #: Styles of the two superposed results, and of their difference.
@@ -65,9 +66,9 @@ def _draw_tractions(name: str, comparison: Comparison, ax: Axes) -> None:
     results = comparison.first, comparison.second
     states = [result.at(comparison.step) for result in results]
     for result, state, style in zip(results, states, STYLES):
-        ax.plot(result.mesh.x, state[name], **style)
-    x = np.union1d(*(result.mesh.x for result in results))
-    one, other = (np.interp(x, r.mesh.x, state[name], 0.0, 0.0) for r, state in zip(results, states))
+        ax.plot(drawn_at(result), state[name], **style)
+    x = np.union1d(*(drawn_at(result) for result in results))
+    one, other = (np.interp(x, drawn_at(r), state[name], 0.0, 0.0) for r, state in zip(results, states))
     ax.plot(x, other - one, **DIFFERENCE)
     plot._frame_contact(ax, comparison.first, states[0])
 
@@ -75,7 +76,7 @@ def _draw_tractions(name: str, comparison: Comparison, ax: Axes) -> None:
 def _draw_gaps(comparison: Comparison, ax: Axes) -> None:
     """Deformed surfaces of the lower body of both results."""
     for result, style in zip((comparison.first, comparison.second), STYLES):
-        ax.plot(result.mesh.x, heights(result, result.at(comparison.step))[0], **style)
+        ax.plot(drawn_at(result), heights(result, result.at(comparison.step))[0], **style)
     plot._frame_contact(ax, comparison.first, comparison.first.at(comparison.step))
 
 

@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 from . import plot
 from .codes import NodeStatus
 from .result import Group, Result
-from .views import friction_limits, has_friction
+from .stress import drawn_at, is_radial
+from .views import along_surface, friction_limits, has_friction, intervals
 
 #: Size of the picture and of a row, inch.
 WIDTH, ROW = 10.8, 2.4
@@ -22,14 +23,11 @@ MOST_NUMBERS = 20
 
 def patches_of(result: Result, state: Group) -> list[tuple[float, float]]:
     """Left and right ends of the patches of a state, x: edges between nodes of the last state, else ends of the nodes' intervals."""
-    if state is result.state and "patch" in result.patches:
+    if state is result.state and "patch" in result.patches and not is_radial(result):
         edges = result.patches.contact_left, result.patches.contact_right
         return [(float(left), float(right)) for left, right in zip(*edges)]
-    half = 0.5 * result.mesh.width
-    return [
-        (float(result.mesh.x[first] - half[first]), float(result.mesh.x[last] + half[last]))
-        for first, last in _touching_nodes(state)
-    ]
+    starts, ends = intervals(result)
+    return [(float(starts[first]), float(ends[last])) for first, last in _touching_nodes(state)]
 
 
 def _touching_nodes(state: Group) -> list[tuple[int, int]]:
@@ -97,11 +95,11 @@ def _gap(result: Result, state: Group, patches: list[tuple[float, float]], ax: A
             left, right, color=plot.WITHOUT_FRICTION, linewidth=0.0, zorder=0, label="contact patch" if number == 0 else "_more"
         )
     gap = np.where(np.isfinite(state.gap), np.maximum(state.gap, 0.0), np.nan)
-    ax.fill_between(result.mesh.x, gap, color=plot.SURFACE, alpha=0.18, linewidth=0.0)
-    ax.plot(result.mesh.x, gap, color=plot.SURFACE, linewidth=0.9, label="gap")
+    ax.fill_between(drawn_at(result), gap, color=plot.SURFACE, alpha=0.18, linewidth=0.0)
+    ax.plot(drawn_at(result), gap, color=plot.SURFACE, linewidth=0.9, label="gap")
     ax.set_ylim(bottom=0.0)
     ax.set_ylabel(plot._label("gap", "g", state.unit("gap")))
-    ax.set_xlabel(plot._label("position", "x", result.mesh.unit("x")))
+    ax.set_xlabel(plot._label(*along_surface(result)))
 
 
 def _by_patch(
@@ -110,7 +108,7 @@ def _by_patch(
     """Places and values of every patch. A traction ends at the patch's edges, at zero unless it is singular there."""
     curves = []
     for (first, last), (left, right) in zip(_touching_nodes(state), patches):
-        x, y, pressure = (array[first : last + 1] for array in (result.mesh.x, values, state.pressure))
+        x, y, pressure = (array[first : last + 1] for array in (drawn_at(result), values, state.pressure))
         falls = len(x) < 2 or pressure[0] < pressure.max(), len(x) < 2 or pressure[-1] < pressure.max()
         ends = np.where(falls, 0.0, (y[0], y[-1]))
         across = np.concatenate(([min(left, x[0])], x, [max(right, x[-1])]))
@@ -120,7 +118,8 @@ def _by_patch(
 
 def _frame(result: Result, patches: list[tuple[float, float]], chosen: int, axes: np.ndarray) -> None:
     """Limits of both columns, numbers of the patches, and marks where the narrow column is in the wide one."""
-    ends = float(result.mesh.x[0] - 0.5 * result.mesh.width[0]), float(result.mesh.x[-1] + 0.5 * result.mesh.width[-1])
+    starts, stops = intervals(result)
+    ends = float(starts[0]), float(stops[-1])
     margin = 0.08 * (patches[-1][1] - patches[0][0])
     axes[0, 0].set_xlim(max(ends[0], patches[0][0] - margin), min(ends[1], patches[-1][1] + margin))
     left, right = patches[chosen]

@@ -23,9 +23,18 @@ from matplotlib.ticker import MaxNLocator
 from .codes import EventKind, NodeStatus
 from .errors import MfvError
 from .result import Group, Result, counts, is_last
-from .stress import NAMES, Largest, StressField, contact_edges, grid, stored, stress
-from .stress import surface as surface_height
-from .views import contact, friction_limits, has_friction, has_last_normal_force, heights, is_named, limit_of_friction
+from .stress import NAMES, Largest, StressField, contact_edges, drawn_at, grid, is_radial, stored, stress, surface_at
+from .views import (
+    along_surface,
+    contact,
+    friction_limits,
+    has_friction,
+    has_last_normal_force,
+    heights,
+    intervals,
+    is_named,
+    limit_of_friction,
+)
 
 if TYPE_CHECKING:
     from .fatigue import ParameterMap
@@ -397,8 +406,8 @@ def shear(result: Result, ax: Axes | None = None, step: int | None = None) -> Ax
     _shade_zones(ax, result, state)
     for index, coefficient in friction_limits(result):
         limit = limit_of_friction(coefficient, state)
-        ax.plot(result.mesh.x, limit, **_limit_style(index))
-        ax.plot(result.mesh.x, -limit, **{**_limit_style(index), "label": "_limit to the left"})
+        ax.plot(drawn_at(result), limit, **_limit_style(index))
+        ax.plot(drawn_at(result), -limit, **{**_limit_style(index), "label": "_limit to the left"})
     _draw_points(ax, result, state, state.shear)
     if "shear" in result.reference and is_last(result, state):
         _draw_closed_form(ax, result, result.reference.shear)
@@ -421,7 +430,7 @@ def surfaces(result: Result, ax: Axes | None = None, step: int | None = None) ->
     state = result.at(step)
     lower, upper = heights(result, state)
     _draw_points(ax, result, state, lower, label="surface of the lower body", color=SURFACE)
-    ax.plot(result.mesh.x, upper, color=MARKS, linewidth=0.9, label="surface of the upper body")
+    ax.plot(drawn_at(result), upper, color=MARKS, linewidth=0.9, label="surface of the upper body")
     ax.set_ylabel(_label("height", "y", state.unit("gap")))
     middle, least = float(np.mean(ax.get_ylim())), 1.0e-3 * abs(float(_loads(result, step)["approach"]))
     if np.ptp(ax.get_ylim()) < least:  # flat: no axis of round-off
@@ -463,7 +472,7 @@ def friction_work(result: Result, ax: Axes | None = None, step: int | None = Non
     _check_cycles(result)
     ax = _axes(ax)
     cycles = result.cycles
-    ax.plot(result.mesh.x, cycles.friction_work, color=NUMBERS, linewidth=0.8, **_points(result.mesh.x.size))
+    ax.plot(drawn_at(result), cycles.friction_work, color=NUMBERS, linewidth=0.8, **_points(result.mesh.x.size))
     ax.set_ylabel(_label("dissipation per cycle and area", "d", cycles.unit("friction_work")))
     _frame_contact(ax, result, result.at(step))
     return ax
@@ -524,7 +533,7 @@ def surface_stress(result: Result, ax: Axes | None = None, step: int | None = No
     name = "sigma_xx" if result.scene.get(f"{body}_radius") is None else "sigma_thetatheta"
     for number, style in zip([*shown, step], [*((0, (k + 1, 1.5)) for k in range(len(shown))), "-"]):
         x = _surface_points(result, body, number)
-        field = stress(result, x, surface_height(result, body, x), body=body, step=number)
+        field = stress(result, *surface_at(result, body, x), body=body, step=number)
         color = NUMBERS if number == step else "0.45"
         label = f"{'state ' if number else 'last state'}{number or ''}"
         ax.plot(x, field[name], color=color, linewidth=1.0, linestyle=style, label=f"{body} body, {label}")
@@ -541,10 +550,13 @@ def _mark_tension(ax: Axes, peak: Largest, result: Result) -> None:
     """Mark the largest tension with its value and place."""
     units = _unit(result.state.unit("pressure")), _unit(result.mesh.unit("x"))
     left, right = contact(result, [result.state])
-    beside = peak.x < 0.5 * (left + right)
-    ax.plot(peak.x, peak.value, "o", color=MARKS, markersize=5, markerfacecolor="none", clip_on=False)
+    place = peak.x
+    if is_radial(result):  # the surface rises from y = 0 on either side of the origin
+        place = float(np.degrees(2.0 * np.arctan2(np.sign(peak.x) * abs(peak.y), abs(peak.x)))) if peak.x else 0.0
+    beside = place < 0.5 * (left + right)
+    ax.plot(place, peak.value, "o", color=MARKS, markersize=5, markerfacecolor="none", clip_on=False)
     text = f"{peak.value:.4g}{units[0]}\nat $x$ = {_signed(peak.x)}{units[1]}"
-    ax.annotate(text, (peak.x, peak.value), xytext=(10 if beside else -10, -2), textcoords="offset points",
+    ax.annotate(text, (place, peak.value), xytext=(10 if beside else -10, -2), textcoords="offset points",
                 ha="left" if beside else "right", va="top", fontsize=9)  # fmt: skip
 
 
@@ -637,8 +649,9 @@ def _draw_closed_form(ax: Axes, result: Result, values: np.ndarray) -> None:
     """A traction in closed form over its contact, down to zero at the ends unless the pressure is singular there."""
     half_width = result.reference.contact_half_width
     middle = float(result.history.rolled[-1]) if "rolled" in result.history else 0.0
-    inside = np.abs(result.mesh.x - middle) < half_width
-    x, y = result.mesh.x[inside], values[inside]
+    places = drawn_at(result)
+    inside = np.abs(places - middle) < half_width
+    x, y = places[inside], values[inside]
     touching_pressure = result.reference.pressure[inside]
     if touching_pressure.size > 0 and touching_pressure[0] < touching_pressure.max():
         x, y = np.pad(x, 1, constant_values=(middle - half_width, middle + half_width)), np.pad(y, 1)
@@ -647,7 +660,7 @@ def _draw_closed_form(ax: Axes, result: Result, values: np.ndarray) -> None:
 
 def _draw_points(ax: Axes, result: Result, state: Group, values: np.ndarray, label: str = "computed", color: str = NUMBERS) -> None:
     points = _points(int(np.count_nonzero(state.status != NodeStatus.OPEN)))
-    ax.plot(result.mesh.x, values, linestyle="none", color=color, **points, label=label)
+    ax.plot(drawn_at(result), values, linestyle="none", color=color, **points, label=label)
 
 
 def _points(number: int) -> dict[str, Any]:
@@ -657,12 +670,12 @@ def _points(number: int) -> dict[str, Any]:
 
 def _shade_zones(ax: Axes, result: Result, state: Group) -> None:
     """Background of the stick and slip zones; of each kind the first has the label."""
-    half = 0.5 * result.mesh.width
+    starts, ends = intervals(result)
     labelled: set[int] = set()
     for status, first, last in _runs(state.status):
         if status in ZONES:
             style = ZONES[status] if status not in labelled else {**ZONES[status], "label": "_another zone"}
-            ax.axvspan(result.mesh.x[first] - half[first], result.mesh.x[last] + half[last], linewidth=0.0, zorder=0, **style)
+            ax.axvspan(starts[first], ends[last], linewidth=0.0, zorder=0, **style)
             labelled.add(status)
 
 
@@ -687,7 +700,7 @@ def _frame_contact(ax: Axes, result: Result, state: Group) -> None:
     """Show the contact and a quarter of its length on either side within the mesh; without contact the whole mesh."""
     ax.set_xlim(contact(result, [state]))
     ax.locator_params(axis="x", nbins=5)
-    ax.set_xlabel(_label("position", "x", result.mesh.unit("x")))
+    ax.set_xlabel(_label(*along_surface(result)))
 
 
 def _mark_step_ends(ax: Axes, result: Result, step: int | None, across: str, up: str) -> None:

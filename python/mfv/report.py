@@ -26,15 +26,18 @@ from . import __version__, _html
 from .codes import NodeStatus
 from .load_history import LoadHistory, evenly, kept_states, thinned
 from .result import Group, Result, counts, is_last
+from .stress import drawn_at
 from .views import (
     LOADS,
     Curve,
+    along_surface,
     contact,
     curve_of,
     friction_limits,
     has_friction,
     has_last_normal_force,
     heights,
+    intervals,
     is_named,
     limit_of_friction,
     statuses,
@@ -155,7 +158,7 @@ def page(result: Result, source: str, history: LoadHistory | None = None) -> str
 def _in_view(result: Result, limits: tuple[float, float]) -> slice:
     """The nodes that are shown."""
     left, right = limits
-    inside = np.flatnonzero((result.mesh.x >= left) & (result.mesh.x <= right))
+    inside = np.flatnonzero((drawn_at(result) >= left) & (drawn_at(result) <= right))
     return slice(int(inside[0]), int(inside[-1]) + 1)
 
 
@@ -201,8 +204,8 @@ def _words(result: Result, state: Group, number: int, is_kept: bool) -> str:
 
 def _traction_figures(result: Result, inside: slice) -> dict[str, Any]:
     """Pressure, and shear traction or surfaces, without values; the slider sets them."""
-    x = _list(result.mesh.x[inside])
-    across = _axis("position", "x", result.mesh.unit("x"))
+    x = _list(drawn_at(result)[inside])
+    across = _axis(*along_surface(result))
     largest = max(float(state.pressure.max()) for state in result.steps) or 1.0
     pressure = _figure(across, _axis("pressure", "p", result.state.unit("pressure"), [0.0, 1.08 * largest]))
     if "pressure" in result.reference:
@@ -259,7 +262,7 @@ def _map_figure(result: Result, inside: slice) -> dict[str, Any]:
     """The status of every node in every state."""
     statuses = np.array([state.status[inside] for state in result.steps])
     ticks = {"dtick": 1} if len(result.steps) <= MOST_TICKS else {}
-    figure = _figure(_axis("position", "x", result.mesh.unit("x")), {"title": {"text": "state"}, **ticks})
+    figure = _figure(_axis(*along_surface(result)), {"title": {"text": "state"}, **ticks})
     figure.update_layout(margin_t=8)
     words = [STATUSES[NodeStatus(code)][0] for code in range(len(NodeStatus))]
     figure.add_heatmap(
@@ -310,8 +313,8 @@ def _cycle_figures(result: Result, inside: slice) -> dict[str, Any]:
     figures = {"cycles": figure}
     if "friction_work" in cycles:
         label = _axis("dissipation per cycle and area", "", cycles.unit("friction_work"))
-        work = _figure(_axis("position", "x", result.mesh.unit("x")), label)
-        x, values = _list(result.mesh.x[inside]), _list(cycles.friction_work[inside])
+        work = _figure(_axis(*along_surface(result)), label)
+        x, values = _list(drawn_at(result)[inside]), _list(cycles.friction_work[inside])
         work.add_scatter(x=x, y=values, name="friction work", **POINTS)
         figures["work"] = work
     return {name: _plain(figure) for name, figure in figures.items()}
@@ -357,8 +360,8 @@ def _status_colours() -> dict[str, Any]:
 
 def _edges(result: Result, inside: slice) -> list[float]:
     """The boundaries between the intervals of the nodes."""
-    x, half = result.mesh.x[inside], 0.5 * result.mesh.width[inside]
-    return [*(x - half).tolist(), float(x[-1] + half[-1])]
+    starts, ends = intervals(result)
+    return [*starts[inside].tolist(), float(ends[inside][-1])]
 
 
 def _key_numbers(result: Result) -> list[dict[str, str]]:

@@ -36,6 +36,10 @@ BODIES = ("lower", "upper")
 
 Array = NDArray[np.float64]
 
+#: Half the angle of contact, in radians, beyond which the grid is about the whole circle; its farthest distance around a hole, and the
+#: nearest one to the centre of a disk, where the force that holds it acts, over the radius.
+WIDE, BESIDE, NEAREST = 1.2, 2.5, 0.3
+
 
 class Largest(NamedTuple):
     """The largest value of a stress and where it is."""
@@ -117,7 +121,7 @@ def grid(
     down: int = 81,
 ) -> StressField:
     """Stresses on a grid `width` contact half-widths to either side of the contact and `depth` below the surface, shape
-    (down, across).
+    (down, across); where a pin touches its bore nearly all around, on circles about its axis, shape (down, 2 across - 1).
 
     Otherwise as `stress`. Raises ValueError without load.
     """
@@ -125,6 +129,14 @@ def grid(
     half = 0.5 * (right - left)
     if half == 0.0:
         raise ValueError("no load in this state")
+    if is_radial(result) and half > WIDE * _radius_of_nodes(result):
+        radius, centre = float(result.scene[f"{body}_radius"]), _turning(result, body) * float(result.scene[f"{body}_radius"])
+        is_disk = result.attributes[f"{body}_body"].endswith("disk")
+        angle, distance = np.meshgrid(
+            np.linspace(0.0, 2.0 * np.pi, 2 * across - 1),
+            radius * np.linspace(1.0 - 1.0e-9, NEAREST, down) if is_disk else radius * np.geomspace(1.0 + 1.0e-9, BESIDE, down),
+        )
+        return stress(result, distance * np.sin(angle), centre - distance * np.cos(angle), body=body, step=step)
     x = 0.5 * (left + right) + half * np.linspace(-width, width, across)
     across_grid, below = np.meshgrid(x, half * np.linspace(0.0, depth, down))
     inside = surface(result, body, across_grid) - below
@@ -191,11 +203,33 @@ def _surface_at(result: Result, body: str, arc: Array) -> tuple[Array, Array, Ar
     radius = result.scene.get(f"{body}_radius")
     if radius is None:
         return arc, np.zeros_like(arc), np.zeros_like(arc)
-    is_radial = keys(result.attributes["input"]).get("mesh%normals", "vertical").lower() == "radial"
-    # With radial normals arc lengths are those of the hole, the larger of the circles.
-    angle = arc / (max(result.scene.lower_radius, result.scene.upper_radius) if is_radial else radius)
+    angle = arc / (_radius_of_nodes(result) if is_radial(result) else radius)
     turning = _turning(result, body)
     return radius * np.sin(angle), 2.0 * turning * radius * np.sin(0.5 * angle) ** 2, turning * angle
+
+
+def is_radial(result: Result) -> bool:
+    """Whether normals are radial, so that places along the surface are angles."""
+    return bool(keys(result.attributes["input"]).get("mesh%normals", "vertical").lower() == "radial")
+
+
+def drawn_at(result: Result, arc: Array | None = None) -> Array:
+    """Where nodes, or arc lengths from the origin, are drawn: at their x; with radial normals at their angles, in degrees."""
+    if is_radial(result):
+        return np.degrees((_arc(result) if arc is None else arc) / _radius_of_nodes(result))
+    return np.asarray(result.mesh.x if arc is None else arc)
+
+
+def surface_at(result: Result, body: str, places: Array) -> tuple[Array, Array]:
+    """Points x, y of the undeformed surface of a body at places as in `drawn_at`."""
+    if is_radial(result):
+        return _surface_at(result, body, np.radians(places) * _radius_of_nodes(result))[:2]
+    return places, surface(result, body, places)
+
+
+def _radius_of_nodes(result: Result) -> float:
+    """With radial normals arc lengths are those of the hole, the larger of the circles."""
+    return float(max(result.scene.lower_radius, result.scene.upper_radius))
 
 
 def _turning(result: Result, body: str) -> float:

@@ -13,7 +13,7 @@ import numpy as np
 from .codes import NodeStatus
 from .load_history import kept_states
 from .result import Group, Result
-from .stress import surface
+from .stress import drawn_at, is_radial, surface
 
 
 class Curve(NamedTuple):
@@ -60,14 +60,26 @@ def curve_of(result: Result) -> Curve:
     return ROTATIONAL if moves("moment") and moves("rotation") else NORMAL
 
 
+def along_surface(result: Result) -> tuple[str, str, str]:
+    """Name, symbol and unit of the places along the surface: x, with radial normals the angle."""
+    return ("angle", "\N{GREEK SMALL LETTER THETA}", "degrees") if is_radial(result) else ("position", "x", result.mesh.unit("x"))
+
+
+def intervals(result: Result) -> tuple[np.ndarray, np.ndarray]:
+    """Both ends of the intervals of the nodes, as drawn."""
+    places = drawn_at(result)
+    half = 0.5 * (drawn_at(result, result.mesh.width) if is_radial(result) else result.mesh.width)
+    return places - half, places + half
+
+
 def contact(result: Result, states: Sequence[Group] = ()) -> tuple[float, float]:
-    """The range of x in contact in any of the states, with a quarter of its length on either side within the mesh.
+    """The range of x (see `along_surface`) in contact in any of the states, with a quarter of its length on either side within the mesh.
 
     `states`: by default those of the result. Without contact: the whole mesh.
     """
     states = states or result.steps or kept_states(result).steps
     touched = np.any([state.status != NodeStatus.OPEN for state in states], axis=0)
-    starts, ends = result.mesh.x - 0.5 * result.mesh.width, result.mesh.x + 0.5 * result.mesh.width
+    starts, ends = intervals(result)
     if not touched.any():
         return float(starts[0]), float(ends[-1])
     left, right = starts[touched][0], ends[touched][-1]
@@ -101,9 +113,12 @@ def limit_of_friction(coefficient: np.ndarray, state: Group) -> np.ndarray:
 
 
 def heights(result: Result, state: Group) -> tuple[np.ndarray, np.ndarray]:
-    """Heights of both surfaces: the lower one deformed from its own shape, the upper one a gap above it."""
+    """Heights of both surfaces: the lower one deformed from its own shape (with radial normals along the radius, from its circle), the
+    upper one a gap above it."""
     x = result.mesh.x
-    lower = surface(result, "lower", x) - state.get("normal_displacement", np.zeros_like(x))
+    lower = (np.zeros_like(x) if is_radial(result) else surface(result, "lower", x)) - state.get(
+        "normal_displacement", np.zeros_like(x)
+    )
     return lower, np.where(np.isfinite(state.gap), lower + state.gap, np.nan)
 
 

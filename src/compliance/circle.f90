@@ -125,6 +125,8 @@ contains
       self%normal_translation = self%normal_translation &
                                 + by_force*(kappa**2 + 6.0_wp*kappa + 1.0_wp)/(2.0_wp*(kappa + 1.0_wp))
       self%tangential_translation = self%tangential_translation + by_force*(kappa**2 - 3.0_wp)/(kappa + 1.0_wp)
+      ! With radial normals the contact can be anywhere: a force in any direction moves the disk as far.
+      if (self%radial) self%tangential_translation = self%tangential_translation + by_force*0.5_wp*(7.0_wp - kappa)
    end subroutine set_translations
 
    !> See mfv_compliance.

@@ -27,6 +27,7 @@ module mfv_interior_circle
    use mfv_kinds, only: pi, wp
    use mfv_logarithms, only: log_ratio
    use mfv_quadrature, only: gauss_points
+   use mfv_tolerances, only: certified
    implicit none
    private
    public :: circle_load_type, new_circle_load, longest_element
@@ -200,6 +201,7 @@ contains
    pure real(wp) function surface_stress(self, angle) result(stress)
       class(circle_load_type), intent(in) :: self
       real(wp), intent(in) :: angle
+      real(wp), parameter :: at_end = certified
       real(wp) :: from, to, growth, sum, radial, kelvin, part
       complex(wp) :: distant(4)
       integer :: near(2, self%tree%leaves()), number, j, k
@@ -212,9 +214,8 @@ contains
             associate (e => self%elements(j))
                from = 2.0_wp*sin(0.5_wp*(e%from - angle))
                to = 2.0_wp*sin(0.5_wp*(e%to - angle))
-               growth = 0.0_wp
-               if (abs(from) > 0.0_wp) growth = -log(abs(from))
-               if (abs(to) > 0.0_wp) growth = growth + log(abs(to))
+               ! At an end the logarithm cancels with that of the next element; all around the circle they meet up to round-off.
+               growth = log(max(abs(to), at_end)) - log(max(abs(from), at_end))
                sum = sum + aimag(e%mean)*growth + aimag(e%tilt)*tilted_part(e, angle, growth)
                if (angle >= e%from .and. angle <= e%to) then
                   part = sin(angle - 0.5_wp*(e%from + e%to))/e%sine

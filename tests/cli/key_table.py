@@ -102,6 +102,18 @@ SCENES: dict[str, Groups] = {
     "history of others": scene(ELASTIC, RIGID_DISK, MESH, COULOMB, PRESS) + [("history", {"shift": "1e-5"})],
     "wear": scene(ELASTIC, RIGID_DISK, MESH, COULOMB, PRESS, {"tangential_force": "2e-4", "cycles": "2"})
     + [("wear", {"coefficient": "1e-3", "tolerance": "0.1"})],
+    "fit": scene(
+        ELASTIC_DISK | {"shape": "'hole'"},
+        ELASTIC_DISK,
+        {"normals": "'radial'", "nodes": "12"},
+        COULOMB,
+        {"interference": "1e-3"},
+        {"moment": "1e-6"},
+    ),
+    "history of a fit": scene(
+        ELASTIC_DISK | {"shape": "'hole'"}, ELASTIC_DISK, {"normals": "'radial'", "nodes": "12"}, COULOMB, {"interference": "1e-3"}
+    )
+    + [("history", {"normal_force": "1e-4, -1e-4"})],
     "rolling": scene(ELASTIC_DISK, RIGID_PLANE, MESH, COULOMB, PRESS, {"moment": "1e-6"}),
 }
 
@@ -418,7 +430,12 @@ CASE: dict[tuple[str, str], Row] = {
     ("wear", "tolerance"): real("wear", "wear", "0.05", lower=1e-6, upper=1.0),
     ("wear", "block"): whole("wear", "wear", "5", 1, 1000000, without=("tolerance",)),
     ("step", "normal_force"): real(
-        "step(1)", "cylinder", "1e-3", "force/length", lower=0.0, needed=": needs a target: normal_force or approach"
+        "step(1)",
+        "cylinder",
+        "1e-3",
+        "force/length",
+        needed=": needs a target: normal_force or approach",
+        refused=dict.fromkeys(("-1e-3", "-1e-100", "-1e100"), "must be a number at least 0"),
     ),
     ("step", "approach"): real("step(1)", "cylinder", "1e-3", "length", without=("normal_force",)),
     ("step", "tangential_force"): real("step(2)", "cylinder", "2e-4", "force/length", needed=": needs a target: normal_force or"),
@@ -428,6 +445,9 @@ CASE: dict[tuple[str, str], Row] = {
     ("step", "rotation"): real("step(2)", "rolling", "1e-6", "radians", without=("moment",)),
     ("step", "lower_bulk_stress"): real("step(2)", "cylinder", "1e-3", "force/length^2"),
     ("step", "upper_bulk_stress"): real("step(2)", "elastic power", "1e-3", "force/length^2"),
+    ("step", "interference"): real(
+        "step(1)", "fit", "1e-3", "length", lower=0.0, needed=": needs a target: normal_force or approach"
+    ),
     ("step", "friction"): logical("step(2)", "cylinder", ".true.", refused={".false.": NO_FRICTION, "f": NO_FRICTION}),
     ("step", "cycles"): whole("step(3)", "cycles", "2", 0, 1000000, refused={"0": "has no effect without cycles of 2 or more"}),
     ("step", "steady_tolerance"): positive("step(3)", "cycles", "1e-6"),
@@ -438,7 +458,14 @@ CASE: dict[tuple[str, str], Row] = {
         needed=": needs a file, or lists of loads such as tangential_force",
         refused={"''": "must not be empty"},
     ),
-    ("history", "normal_force"): real("history", "history", "9e-4", "force/length", lower=0.0, is_list=True),
+    ("history", "normal_force"): real(
+        "history",
+        "history",
+        "9e-4",
+        "force/length",
+        is_list=True,
+        refused=dict.fromkeys(("-1e-3", "-1e-100", "-1e100"), "must be at least 0"),
+    ),
     ("history", "approach"): real("history", "history", "1e-3", "length", is_list=True),
     ("history", "tangential_force"): real("history", "history of others", "1e-4", "force/length", is_list=True, without=("shift",)),
     ("history", "shift"): real("history", "history of others", "1e-5", "length", is_list=True, needed=": needs a file, or lists"),
@@ -449,6 +476,7 @@ CASE: dict[tuple[str, str], Row] = {
     ("history", "rotation"): real("history", "history", "1e-6", "radians", is_list=True),
     ("history", "lower_bulk_stress"): real("history", "history", "1e-3", "force/length^2", is_list=True),
     ("history", "upper_bulk_stress"): real("history", "history of elastic bodies", "1e-3", "force/length^2", is_list=True),
+    ("history", "interference"): real("history", "history of a fit", "2e-3", "length", lower=0.0, is_list=True),
     ("history", "period"): whole("history", "history", "2", 2, 1000000, refused={"1000000": "must be at most 2, the number of"}),
     ("history", "cycles"): whole("history", "history", "2", 1, 1000000, refused={"1": "has no effect without cycles of 2 or more"}),
     ("history", "steady_tolerance"): positive("history", "history", "1e-6"),

@@ -20,7 +20,17 @@ from .scales import Scales
 
 #: Loads by kind; targets that a step changes linearly.
 FORCES = ("normal_force", "tangential_force")
-LOADS = (*FORCES, "approach", "shift", "force_ratio", "moment", "rotation", "lower_bulk_stress", "upper_bulk_stress", "interference")
+LOADS = (
+    *FORCES,
+    "approach",
+    "shift",
+    "force_ratio",
+    "moment",
+    "rotation",
+    "lower_bulk_stress",
+    "upper_bulk_stress",
+    "interference",
+)
 #: Loads that change their sign in the mirror image, and with the picture turned upside down.
 ODD_LOADS = ("tangential_force", "shift", "force_ratio", "moment", "rotation")
 TURNED_LOADS = ("moment", "rotation")

@@ -63,15 +63,19 @@ class Scales:
 
     def __init__(self, result: mfv.Result) -> None:
         summary, x = result.summary, result.mesh.x
+        #: A pin that fits its bore neatly: the mesh covers the circle.
+        self.is_closed = "arc" in result.mesh and float(x[-1]) < float(np.max(x))
         steps = [*result.steps, summary]
         self.one = 1.0
         length = float(summary.get("contact_length", math.nan))
         span = float(summary.get("contact_right", math.nan)) - float(summary.get("contact_left", math.nan))
-        self.half_width = 0.5 * (span if span > 0 else length if length > 0 else float(x[-1] - x[0]))
+        self.half_width = 0.5 * (max(span, length) if span > 0 else length if length > 0 else float(x[-1] - x[0]))
         friction = result.mesh.get("static_friction")
         mu = 0.0 if friction is None else float(np.max(friction))
         self.friction, self.friction_squared = mu, mu**2
-        self.normal_force = max(abs(float(step[name])) for step in steps for name in ("normal_force", "closing_force") if name in step)
+        self.normal_force = max(
+            abs(float(step[name])) for step in steps for name in ("normal_force", "closing_force") if name in step
+        )
         self.friction_force = max(mu, SLIPPERY) * self.normal_force
         # A matrix has none.
         modulus = float(result.scene.get("contact_modulus", self.normal_force / max(abs(float(summary.approach)), 1e-300)))

@@ -284,19 +284,26 @@ contains
 
    contains
 
-      !> 1 for a hole, which a uniform pressure stretches, -1 for a disk.
-      pure real(wp) function side_of_hole(body)
+      !> What the tangential stress at the samples has in addition on a circle (surface_stress of mfv_interior_circle).
+      function hoop_stress(body)
          type(body_type), intent(in) :: body
+         real(wp) :: hoop_stress(size(samples%arc)), angle(size(samples%arc)), kappa
 
-         side_of_hole = merge(1.0_wp, -1.0_wp, body%is_hole())
-      end function side_of_hole
+         kappa = body%elasticity%material%kolosov
+         angle = samples%arc/body%radius
+         associate (force => state%fields%force, to_right => -sign(1.0_wp, model%scene%lower%curvature()))
+            hoop_stress = 2.0_wp/((1.0_wp + kappa)*pi*body%radius) &
+                          *(force(motion_approach)*cos(angle) + to_right*force(motion_shift)*sin(angle))
+         end associate
+         if (body%is_hole()) hoop_stress = kappa*hoop_stress + model%force(state%fields%pressure)/(pi*body%radius)
+      end function hoop_stress
 
       subroutine add_body(body, side)
          type(body_type), intent(in) :: body
          integer, intent(in) :: side
          !> Part of the shear that a tension between the samples may have, so that states with and without it differ.
          real(wp), parameter :: between = 0.1_wp
-         real(wp) :: bulk, hoop, sign
+         real(wp) :: bulk, hoop(size(samples%arc)), sign
 
          estimates([candidate_tension(side), candidate_von_mises(side)]) = -1.0_wp
          if (.not. has_interior(body) .or. body%elasticity%is_layered()) return
@@ -305,17 +312,17 @@ contains
          associate (period => model%scene%mesh%period)
             if (period > 0.0_wp) bulk = body%elasticity%material%lateral_ratio()*sum(state%fields%pressure*model%width)/period
          end associate
-         ! A circle is in tension also beside a contact without shear, in proportion to the force; around a neat fit by the mean
-         ! pressure.
+         ! A circle is in tension also beside a contact without shear, in proportion to the force.
          hoop = 0.0_wp
          if (body%deforms_as_circle()) hoop = state%fields%force(motion_approach)/(pi*body%radius)
-         if (model%scene%is_neat()) hoop = (norm2(state%fields%force(:motion_shift)) &
-                                            + 0.5_wp*side_of_hole(body)*model%force(state%fields%pressure))/(pi*body%radius)
+         if (body%deforms_as_circle() .and. model%scene%is_neat()) hoop = hoop_stress(body)
          sign = merge(1.0_wp, -1.0_wp, side == 1)
          associate (stress => bulk + surface_stress_of(body%elasticity%material, samples%pressure, sign*samples%shear, &
                                                        samples%of_pressure, sign*samples%of_shear))
-            estimates(candidate_tension(side)) = hoop + max(max(bulk, 0.0_wp) + between*maxval(abs(state%fields%shear)), &
-                                                            maxval(stress))
+            estimates(candidate_tension(side)) = maxval(hoop + stress)
+            if (.not. model%scene%is_neat()) &
+               estimates(candidate_tension(side)) = max(estimates(candidate_tension(side)), maxval(hoop) + max(bulk, 0.0_wp) &
+                                                        + between*maxval(abs(state%fields%shear)))
             if (body%yield_strength > 0.0_wp) &
                estimates(candidate_von_mises(side)) = largest_von_mises(model, state, patches, samples, stress, body, side, bulk)
          end associate

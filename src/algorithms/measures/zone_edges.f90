@@ -155,6 +155,10 @@ contains
          if (edges%patches > 1) return
          edges%contact_left = last%left
          edges%contact_right = patches(1)%right + last%to_first
+         ! The middle is within half a length from the origin.
+         if (.not. edges%centre() > 0.5_wp*last%to_first*(1.0_wp + visible)) return
+         edges%contact_left = edges%contact_left - last%to_first
+         edges%contact_right = edges%contact_right - last%to_first
       end associate
    end function outermost_edges
 

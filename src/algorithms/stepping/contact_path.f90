@@ -318,7 +318,7 @@ contains
          call self%set_status(self%state%status == node_frictionless, self%holding(self%state%fields%shear))
          return
       end if
-      if (any(abs(self%state%fields%shear) > 0.0_wp)) then
+      if (any(abs(self%state%fields%shear) > certified*self%certificate%traction_scale)) then
          call self%end_here(MFV_INADMISSIBLE_STEP, 'friction cannot be switched off while there is shear traction; '// &
                             'keep friction on in this step', error)
          return
@@ -464,9 +464,15 @@ contains
       if (self%state%contact_nodes() < 2) then
          associate (load => constraints%load(motion), model => self%model)
             scale = model%compliance%modulus*(model%length()*model%unit_of_arm(motion))
-            if (max(abs(load%value), abs(load%rate), abs(self%state%fields%force(motion) - load%value)) > rounding*scale) &
-               call no_continuation(self, 'fewer than two nodes are in contact; the '//trim(motions(motion)%force_name)// &
-                                    ' tips the upper body over', error)
+            if (max(abs(load%value), abs(load%rate), abs(self%state%fields%force(motion) - load%value)) > rounding*scale) then
+               if (model%lifts(motion)) then
+                  call no_continuation(self, 'fewer than two nodes are in contact; the '//trim(motions(motion)%force_name)// &
+                                       ' tips the upper body over', error)
+               else
+                  call self%end_here(MFV_SEPARATED, 'the bodies are not pressed together; nothing balances the '// &
+                                     trim(motions(motion)%force_name), error)
+               end if
+            end if
          end associate
          constraints%load(motion) = load_type(control_displacement, self%state%fields%motion(motion), 0.0_wp)
       else if (slides .and. .not. self%model%lifts(motion)) then
@@ -525,7 +531,7 @@ contains
       if (any(yielding)) then
          call self%set_status(yielding, self%holding(real(-slip_sign(self%state%status), wp)))
          ready = .false.
-      else if (pressed) then
+      else if (pressed .or. (.not. singular .and. self%model%force(response%rate%pressure) > 0.0_wp)) then
          call self%end_here(MFV_GROSS_SLIDING, 'gross sliding: every contact node slips', error)
       else
          call self%end_here(MFV_SEPARATED, 'the bodies are no longer pressed together; nothing balances the '// &

@@ -89,6 +89,7 @@ contains
       type(reader_type), intent(in) :: reader
       type(error_type), allocatable, intent(out) :: error
       type(string_type), allocatable :: keys(:)
+      integer, parameter :: fewest_around = 8
       integer :: i
 
       keys = list_of_words('half_width half_angle ends')
@@ -99,6 +100,9 @@ contains
                                  'circle; remove it', error)
          if (allocated(error)) return
       end do
+      if (reader%integer_value('mesh', 1, 'nodes') < fewest_around) &
+         call reader%complain('mesh', 1, 'nodes', 'must be at least '//to_text(fewest_around)//' around a neat fit', error)
+      if (allocated(error)) return
       if (reader%text_value('mesh', 1, 'refine') == 'edges') &
          call reader%complain('mesh', 1, 'refine', "must be 'none' in a neat fit, whose equal intervals cover the circle", error)
    end subroutine check_neat
