@@ -127,16 +127,17 @@ contains
    end function radial_gap_between
 
    !> Compliance of an elastic body; unallocated for a rigid one. Arguments: see mfv_elasticity.
-   subroutine make_compliance(self, nodes, interval, coupling, tangential, common_radius, compliance, ends)
+   subroutine make_compliance(self, nodes, interval, coupling, tangential, common_radius, compliance, ends, middle)
       class(body_type), intent(in) :: self
       integer, intent(in) :: nodes, coupling
       real(wp), intent(in) :: interval, common_radius
       logical, intent(in) :: tangential
       class(compliance_type), allocatable, intent(out) :: compliance
-      real(wp), intent(in), optional :: ends(:)
+      real(wp), intent(in), optional :: ends(:), middle
 
       if (self%rigid) return
-      call self%elasticity%make_compliance(self%radius, nodes, interval, coupling, tangential, common_radius, compliance, ends)
+      call self%elasticity%make_compliance(self%radius, nodes, interval, coupling, tangential, common_radius, compliance, &
+                                           ends, middle)
    end subroutine make_compliance
 
 end module mfv_body

@@ -41,7 +41,7 @@ module mfv_circle
       !> 1 for a disk, -1 for a hole.
       real(wp) :: side = 1.0_wp
       type(material_type) :: material
-      real(wp) :: radius = 1.0_wp, datum = 1.0_wp
+      real(wp) :: radius = 1.0_wp, datum = 1.0_wp, middle = 0.0_wp
       integer :: kernel = kernel_exact, harmonics = 0
       type(circle_kernels_type) :: kernels
       !> Whether normals are radial.
@@ -65,20 +65,21 @@ module mfv_circle
 contains
 
    !> Disk (`body_disk`) or hole (`body_hole`) of the radius `radius` (length) with `nodes` intervals of the arc length
-   !> `interval`, symmetric about theta = 0. `kernel`: kernel_exact or kernel_fourier; `harmonics` of the latter, 0 for four
+   !> `interval`, symmetric about theta = 0 unless `middle` is given. `kernel`: kernel_exact or kernel_fourier; `harmonics` of the latter, 0 for four
    !> per interval; the circle must then consist of whole intervals (circle_intervals). `datum`, length: see above.
    !> `coupling`, `tangential`: see mfv_compliance. `radial`: radial normals. With nodes at common angles on circles of
    !> different radii, `radius` and `interval` are those of the arc to which tractions refer, and `datum` is in proportion:
    !> forces at an angle displace circles of any radius equally, except for ln(D/R). `ends`: of unequal intervals, of which
-   !> `interval` is the mean, arc lengths, shape (nodes + 1); such a body has the exact kernel, and entries only.
-   function new_circle(body, material, radius, nodes, interval, datum, kernel, harmonics, coupling, tangential, radial, ends) &
-      result(self)
+   !> `interval` is the mean, arc lengths, shape (nodes + 1); such a body has the exact kernel, and entries only. `middle`: arc
+   !> length of the middle of equal intervals with radial normals; 0 if absent.
+   function new_circle(body, material, radius, nodes, interval, datum, kernel, harmonics, coupling, tangential, radial, ends, &
+                                         middle) result(self)
       integer, intent(in) :: body, nodes, kernel, harmonics, coupling
       type(material_type), intent(in) :: material
       real(wp), intent(in) :: radius, interval, datum
       logical, intent(in) :: tangential
       logical, intent(in), optional :: radial
-      real(wp), intent(in), optional :: ends(:)
+      real(wp), intent(in), optional :: ends(:), middle
       type(circle_type) :: self
       integer :: i
 
@@ -91,6 +92,7 @@ contains
       self%kernel = kernel
       self%harmonics = harmonics
       if (present(radial)) self%radial = radial
+      if (present(middle)) self%middle = middle
       if (harmonics == 0) self%harmonics = default_harmonics*circle_intervals(radius, interval)
       self%modulus = material%plane_modulus()
       call self%choose_blocks(coupling, tangential, self%radial)
@@ -148,7 +150,7 @@ contains
       self%operator(by_shear) = self%operator(by_normal)
       if (self%radial .and. self%one_way()) &
          self%operator(by_shear) = new_toeplitz(self%kernels%radial, self%cross(:, by_shear), self%kernels%tangential)
-      call set_angles(self, [(0.5_wp*(2*i - nodes - 1)*(self%interval/self%radius), i=1, nodes)])
+      call set_angles(self, [((self%middle + 0.5_wp*(2*i - nodes - 1)*self%interval)/self%radius, i=1, nodes)])
       self%block_values = 3*nodes
    end subroutine resize
 

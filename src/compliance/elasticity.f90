@@ -199,13 +199,15 @@ contains
    !> Compliance with `nodes` intervals of the width `interval` (length) of a surface of the radius `radius` (circles).
    !> `coupling`, `tangential`: see mfv_compliance. `common_radius`: with radial normals, radius of the arc with the nodes of
    !> both bodies, to which tractions refer (length); else 0. `ends`: of unequal intervals, arc lengths, shape (nodes + 1).
-   subroutine make_compliance(self, radius, nodes, interval, coupling, tangential, common_radius, compliance, ends)
+   !> `middle`: see new_circle.
+   subroutine make_compliance(self, radius, nodes, interval, coupling, tangential, common_radius, compliance, ends, &
+                              middle)
       class(elasticity_type), intent(in) :: self
       integer, intent(in) :: nodes, coupling
       real(wp), intent(in) :: radius, interval, common_radius
       logical, intent(in) :: tangential
       class(compliance_type), allocatable, intent(out) :: compliance
-      real(wp), intent(in), optional :: ends(:)
+      real(wp), intent(in), optional :: ends(:), middle
       class(compliance_type), allocatable :: graded
       real(wp) :: of_arc
 
@@ -214,7 +216,7 @@ contains
          of_arc = merge(common_radius, radius, common_radius > 0.0_wp)
          allocate (compliance, source=new_circle(merge(body_disk, body_hole, self%kind == as_disk), self%material, of_arc, nodes, &
                                                  interval, self%datum*(of_arc/radius), self%kernel, self%harmonics, coupling, &
-                                                 tangential, common_radius > 0.0_wp, ends))
+                                                 tangential, common_radius > 0.0_wp, ends, middle))
       case (as_matrix)
          allocate (compliance, source=new_matrix_compliance(self%matrix, self%width, coupling, tangential))
       case default

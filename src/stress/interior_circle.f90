@@ -27,7 +27,7 @@ module mfv_interior_circle
    use mfv_kinds, only: pi, wp
    use mfv_logarithms, only: log_ratio
    use mfv_quadrature, only: gauss_points
-   use mfv_tolerances, only: certified
+   use mfv_tolerances, only: visible
    implicit none
    private
    public :: circle_load_type, new_circle_load, longest_element
@@ -57,6 +57,8 @@ module mfv_interior_circle
       type(element_tree_type) :: tree
       !> Resultant F, and means N + i T of sigma_rr + i sigma_rtheta.
       complex(wp) :: force = 0.0_wp, mean = 0.0_wp
+      !> The whole circle, radians, as the ends of the elements have it.
+      real(wp) :: around = 0.0_wp
    contains
       procedure :: stress
       procedure :: surface_stress
@@ -95,6 +97,10 @@ contains
          end associate
       end do
       self%from = from
+      self%around = 2.0_wp*pi
+      if (size(to) > 0) then
+         if (abs(to(size(to)) - from(1) - self%around) < visible) self%around = to(size(to)) - from(1)
+      end if
       self%tree = tree_of(self%elements)
    end function new_circle_load
 
@@ -201,7 +207,6 @@ contains
    pure real(wp) function surface_stress(self, angle) result(stress)
       class(circle_load_type), intent(in) :: self
       real(wp), intent(in) :: angle
-      real(wp), parameter :: at_end = certified
       real(wp) :: from, to, growth, sum, radial, kelvin, part
       complex(wp) :: distant(4)
       integer :: near(2, self%tree%leaves()), number, j, k
@@ -212,10 +217,12 @@ contains
       do k = 1, number
          do j = near(1, k), near(2, k)
             associate (e => self%elements(j))
-               from = 2.0_wp*sin(0.5_wp*(e%from - angle))
-               to = 2.0_wp*sin(0.5_wp*(e%to - angle))
-               ! At an end the logarithm cancels with that of the next element; all around the circle they meet up to round-off.
-               growth = log(max(abs(to), at_end)) - log(max(abs(from), at_end))
+               from = 2.0_wp*sin(0.5_wp*nearest(e%from - angle))
+               to = 2.0_wp*sin(0.5_wp*nearest(e%to - angle))
+               ! At an end the logarithm cancels with that of the next element.
+               growth = 0.0_wp
+               if (abs(from) > 0.0_wp) growth = -log(abs(from))
+               if (abs(to) > 0.0_wp) growth = growth + log(abs(to))
                sum = sum + aimag(e%mean)*growth + aimag(e%tilt)*tilted_part(e, angle, growth)
                if (angle >= e%from .and. angle <= e%to) then
                   part = sin(angle - 0.5_wp*(e%from + e%to))/e%sine
@@ -230,6 +237,16 @@ contains
       else
          stress = -2.0_wp/pi*sum + radial - 2.0_wp*real(self%mean, wp) + self%kappa*kelvin
       end if
+
+   contains
+
+      !> The same angle within half the circle. Elements all around it end where they begin, without a difference by round-off.
+      pure real(wp) function nearest(away)
+         real(wp), intent(in) :: away
+
+         nearest = away
+         if (abs(away) > pi) nearest = away - sign(self%around, away)
+      end function nearest
    end function surface_stress
 
    !> sigma_rr + i sigma_rtheta at an angle from theta = 0, radians; 0 outside all elements.

@@ -14,7 +14,7 @@ module mfv_contact_model
    use mfv_kinds, only: pi, wp
    use mfv_lapack, only: ddot
    use mfv_quadrature, only: gauss_points
-   use mfv_tolerances, only: significant
+   use mfv_tolerances, only: significant, visible
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
                           motion_upper_bulk, motion_interference, motion_wear, arm_unit
    use mfv_reference_indenter, only: indenter_type
@@ -111,6 +111,7 @@ contains
       model%moves = scene%moves()
       call choose_mesh(scene, nodes, interval, model%growing)
       if (covers_period(scene, nodes, interval) .and. .not. scene%mesh%has_middle) call choose_middle(model%scene, nodes)
+      if (scene%is_neat() .and. .not. scene%mesh%has_middle) call turn_to_load(model%scene, interval)
       call model%build_compliance(nodes, interval)
       allocate (model%worn(nodes), model%wear(nodes), source=0.0_wp)
       call model%place_nodes()
@@ -287,8 +288,10 @@ contains
       started = seconds_now()
       associate (scene => self%scene)
          common_radius = merge(scene%arc_radius(), 0.0_wp, scene%mesh%radial)
-         call scene%lower%make_compliance(nodes, interval, scene%coupling, self%tangential, common_radius, lower, scene%mesh%ends)
-         call scene%upper%make_compliance(nodes, interval, scene%coupling, self%tangential, common_radius, upper, scene%mesh%ends)
+         call scene%lower%make_compliance(nodes, interval, scene%coupling, self%tangential, common_radius, lower, scene%mesh%ends, &
+                                          scene%mesh%middle)
+         call scene%upper%make_compliance(nodes, interval, scene%coupling, self%tangential, common_radius, upper, scene%mesh%ends, &
+                                          scene%mesh%middle)
       end associate
       associate (scene => self%scene, length => nodes*interval)
          call scene%lower%elasticity%find_surface_stress(length)
@@ -571,6 +574,34 @@ contains
       interval = scene%mesh%period/nodes
       scene%mesh%middle = interval*anint((place - sign(0.5_wp*scene%mesh%period, place))/interval)
    end subroutine choose_middle
+
+   !> Put the ends of the mesh around a neat fit opposite to the sum of the forces of all steps, where a gap opens if any does: at an
+   !> end of an interval of the width `interval`, length.
+   subroutine turn_to_load(scene, interval)
+      type(scene_type), intent(inout) :: scene
+      real(wp), intent(in) :: interval
+      integer, parameter :: along(2) = [motion_approach, motion_shift]
+      real(wp) :: load(2), all_loads
+      integer :: i
+
+      scene%mesh%has_middle = .true.
+      if (.not. allocated(scene%steps)) return
+      load = 0.0_wp
+      all_loads = 0.0_wp
+      do i = 1, size(scene%steps)
+         associate (step => scene%steps(i))
+            load = load + step%target(along)
+            all_loads = all_loads + sum(abs(step%target(along)))
+            if (.not. allocated(step%path)) cycle
+            load = load + sum(step%path(along, :), dim=2)
+            all_loads = all_loads + sum(abs(step%path(along, :)))
+         end associate
+      end do
+      if (norm2(load) <= visible*all_loads) return
+      ! x grows to the right on a hole below, and on a disk below turned over.
+      load(2) = -sign(1.0_wp, scene%lower%curvature())*load(2)
+      scene%mesh%middle = interval*anint(scene%arc_radius()*atan2(load(2), load(1))/interval)
+   end subroutine turn_to_load
 
    !> Undeformed gaps at arc lengths from the origin of x, lengths.
    function gap_at(scene, arc) result(gap)

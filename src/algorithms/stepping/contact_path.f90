@@ -531,7 +531,7 @@ contains
       if (any(yielding)) then
          call self%set_status(yielding, self%holding(real(-slip_sign(self%state%status), wp)))
          ready = .false.
-      else if (pressed .or. (.not. singular .and. self%model%force(response%rate%pressure) > 0.0_wp)) then
+      else if (pressed .or. constraints%load(motion_approach)%rate > 0.0_wp) then
          call self%end_here(MFV_GROSS_SLIDING, 'gross sliding: every contact node slips', error)
       else
          call self%end_here(MFV_SEPARATED, 'the bodies are no longer pressed together; nothing balances the '// &
