@@ -44,8 +44,8 @@ module mfv_contact
    integer, parameter :: control_both = -huge(1)
 
    !> Loads and motions of a state, of motion_approach, motion_shift, motion_rotation, motion_lower_bulk, motion_upper_bulk and
-   !> motion_interference: forces [force/length], moment [force], areas [length^2]; lengths, radians, bulk stresses [force/length^2]; dissipation
-   !> [force]; and counts.
+   !> motion_interference: forces [force/length], moment [force], areas [length^2]; lengths, radians, bulk stresses
+   !> [force/length^2]; dissipation [force]; and counts.
    type :: loads_type
       real(wp) :: force(user_motions) = 0.0_wp, motion(user_motions) = 0.0_wp, dissipation = 0.0_wp
       integer :: contact_nodes = 0, stick_nodes = 0, slip_nodes = 0, events = 0, linear_solves = 0
@@ -493,7 +493,7 @@ contains
          call set_error(error, MFV_BAD_ARGUMENT, 'a target is not finite')
       else if (wrong > 0) then
          call set_error(error, MFV_BAD_ARGUMENT, 'the '//trim(merge(motions(wrong)%key, motions(wrong)%force_name, &
-                        motions(wrong)%is_known))//' must not be negative')
+                                                                    motions(wrong)%is_known))//' must not be negative')
       else if (.not. ieee_is_finite(step%steady_tolerance) .or. step%steady_tolerance < 0.0_wp) then
          call set_error(error, MFV_BAD_ARGUMENT, 'steady_tolerance must be a number and not negative')
       else if (step%cycles < 0 .or. step%cycles > most_cycles) then

@@ -65,15 +65,15 @@ module mfv_circle
 contains
 
    !> Disk (`body_disk`) or hole (`body_hole`) of the radius `radius` (length) with `nodes` intervals of the arc length
-   !> `interval`, symmetric about theta = 0 unless `middle` is given. `kernel`: kernel_exact or kernel_fourier; `harmonics` of the latter, 0 for four
-   !> per interval; the circle must then consist of whole intervals (circle_intervals). `datum`, length: see above.
-   !> `coupling`, `tangential`: see mfv_compliance. `radial`: radial normals. With nodes at common angles on circles of
-   !> different radii, `radius` and `interval` are those of the arc to which tractions refer, and `datum` is in proportion:
+   !> `interval`, symmetric about theta = 0 unless `middle` is given. `kernel`: kernel_exact or kernel_fourier; `harmonics` of
+   !> the latter, 0 for four per interval; the circle must then consist of whole intervals (circle_intervals). `datum`, length:
+   !> see above. `coupling`, `tangential`: see mfv_compliance. `radial`: radial normals. With nodes at common angles on circles
+   !> of different radii, `radius` and `interval` are those of the arc to which tractions refer, and `datum` is in proportion:
    !> forces at an angle displace circles of any radius equally, except for ln(D/R). `ends`: of unequal intervals, of which
    !> `interval` is the mean, arc lengths, shape (nodes + 1); such a body has the exact kernel, and entries only. `middle`: arc
    !> length of the middle of equal intervals with radial normals; 0 if absent.
    function new_circle(body, material, radius, nodes, interval, datum, kernel, harmonics, coupling, tangential, radial, ends, &
-                                         middle) result(self)
+                       middle) result(self)
       integer, intent(in) :: body, nodes, kernel, harmonics, coupling
       type(material_type), intent(in) :: material
       real(wp), intent(in) :: radius, interval, datum
@@ -185,9 +185,10 @@ contains
       kernels(cross) = sign(1.0_wp, distance)*kernels(cross)
    end subroutine kernels_at
 
-   !> Rotation of a disk with radial normals, times G, by a unit shear traction on an interval of the length `width`, that holds the
-   !> circle of half its area: the moment at its centre turns that by an infinite angle. Uniform shear then displaces the rims of
-   !> disk and hole alike, each along its traction. (Without it they move together, so that nothing resists such a shear all around.)
+   !> Rotation of a disk with radial normals, times G, by a unit shear traction on an interval of the length `width`, that holds
+   !> the circle of half its area: the moment at its centre turns that by an infinite angle. Uniform shear then displaces the
+   !> rims of disk and hole alike, each along its traction. (Without it they move together, so that nothing resists such a shear
+   !> all around.)
    pure real(wp) function rotation_of_disk(self, width)
       class(circle_type), intent(in) :: self
       real(wp), intent(in) :: width

@@ -10,8 +10,8 @@ contains
 
    !> Normal force (force/length) at which the contact reaches the angle `half_angle` (radians) to either side: E* dR/P = (2 -
    !> ln(b^2 + 1) - 2 b^4)/(pi (b^2 + 1) b^2), b = tan(half_angle/2). `clearance`: dR, the difference of the radii, length;
-   !> `youngs_modulus`: E* = E/(1 - nu^2) in plane strain, E in plane stress, force/length^2. Beyond about 85.5 degrees, where
-   !> the numerator vanishes, no finite force: huge.
+   !> `youngs_modulus`: E* = E/(1 - nu^2) in plane strain, E in plane stress, force/length^2. Beyond 84.83 degrees, where the
+   !> numerator vanishes, the contact of a pin without clearance, no finite force: huge.
    elemental real(wp) function persson_force(half_angle, clearance, youngs_modulus) result(normal_force)
       real(wp), intent(in) :: half_angle, clearance, youngs_modulus
       real(wp) :: square, numerator

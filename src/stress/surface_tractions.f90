@@ -916,9 +916,9 @@ contains
       end do
    end function shape_of_correction
 
-   !> With normals that turn along the surface the integrals of p and tau are not the forces. Give the elements both forces of the
-   !> nodes and the moment of the shear about the centre of the normals: tractions are multiplied by a sine of the angle, which has a
-   !> force on any arc, even around the whole circle, and shear is added as in balance.
+   !> With normals that turn along the surface the integrals of p and tau are not the forces. Give the elements both forces of
+   !> the nodes and the moment of the shear about the centre of the normals: tractions are multiplied by a sine of the angle,
+   !> which has a force on any arc, even around the whole circle, and shear is added as in balance.
    subroutine balance_inclined(patch, knots, values)
       type(fitted_patch_type), intent(in) :: patch
       real(wp), intent(in) :: knots(:)

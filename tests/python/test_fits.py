@@ -100,7 +100,7 @@ def test_a_neat_pin_has_the_contact_of_persson_at_any_load() -> None:
     larger = solved(mfv.Step(normal_force=1.0e5), nodes=101, friction=None)
     assert larger.state.pressure == pytest.approx(1000 * found[0].state.pressure, rel=1e-9)
     below, above = mfv.reference.persson_force(half + np.array([-1e-6, 1e-6]), 1.0, 1.0, 0.3)
-    assert 1e3 < below < 1e9 and above > 1e300
+    assert 1e3 < below < 1e9 and np.isnan(above)
 
 
 def test_torque() -> None:

@@ -575,8 +575,8 @@ contains
       scene%mesh%middle = interval*anint((place - sign(0.5_wp*scene%mesh%period, place))/interval)
    end subroutine choose_middle
 
-   !> Put the ends of the mesh around a neat fit opposite to the sum of the forces of all steps, where a gap opens if any does: at an
-   !> end of an interval of the width `interval`, length.
+   !> Put the ends of the mesh around a neat fit opposite to the sum of the forces of all steps, where a gap opens if any does:
+   !> at an end of an interval of the width `interval`, length.
    subroutine turn_to_load(scene, interval)
       type(scene_type), intent(inout) :: scene
       real(wp), intent(in) :: interval

@@ -61,7 +61,7 @@ module mfv_motions
                     key='approach', force_key='normal_force', force_name='normal force', unit='length', force_unit='force/length', &
                                    meaning='approach of the upper body', force_meaning='normal force P per unit thickness', &
                                    target='target of the approach of the upper body, in place of normal_force', &
-                     force_target='target of the normal force P, down; at least 0 except in a neat fit', &
+                                   force_target='target of the normal force P, down; at least 0 except in a neat fit', &
                                    balance='normal_force_balance', balance_meaning='P - sum(p) dx', &
                                    pushes=.true.), &
                                    motion_type( &
@@ -96,13 +96,13 @@ module mfv_motions
                                    force_target='', balance='upper_contraction_balance', &
                        balance_meaning='contraction - that by the tractions', optional=.true., is_stress=.true., is_known=.true.), &
                                    motion_type( &
-                    key='interference', force_key='closing_force', force_name='closing force', unit='length', &
+                                   key='interference', force_key='closing_force', force_name='closing force', unit='length', &
                                    force_unit='force/length', meaning='interference: distance by which it closes all gaps', &
                                    force_meaning='sum of the pressure along the surface, conjugate to the interference', &
                                    target='target of the interference: by how much the radius of a pin exceeds that of its '// &
                                    'bore, or a pad is higher than its place; closes all gaps', &
                                    force_target='', balance='closing_force_balance', &
-                        balance_meaning='closing force - sum of the pressure', optional=.true., is_known=.true.), &
+                                   balance_meaning='closing force - sum of the pressure', optional=.true., is_known=.true.), &
                                    motion_type( &
                                    key='wear', force_key='wear_energy', force_name='energy of wear', unit='1', &
                                    force_unit='force', meaning='part of the wear of a block of cycles', &

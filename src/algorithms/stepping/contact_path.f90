@@ -539,9 +539,10 @@ contains
       end if
    end subroutine hold_motion
 
-   !> Force control without contact: move the upper body, without load, until its nearest nodes touch. Together touch nodes whose
-   !> gaps agree within the round-off of the largest gap and of the displacements so far, and to a part `alike`: the gaps beside a flat tip differ by much less than
-   !> that round-off, and the positions of graded meshes are less accurate than their gaps are small.
+   !> Force control without contact: move the upper body, without load, until its nearest nodes touch. Together touch nodes
+   !> whose gaps agree within the round-off of the largest gap and of the displacements so far, and to a part `alike`: the gaps
+   !> beside a flat tip differ by much less than that round-off, and the positions of graded meshes are less accurate than their
+   !> gaps are small.
    subroutine close_nearest(self, segment, iteration)
       class(contact_path_type), intent(inout) :: self
       type(segment_type), intent(in) :: segment

@@ -20,7 +20,6 @@ module mfv_body_reader
    private
    public :: check_bodies, read_body, check_pair, check_matrix, read_datums
 
-
    real(wp), parameter :: degree = pi/180.0_wp
    !> Keys of an orthotropic material, in the order of new_orthotropic_material; three of them not in plane stress.
    character(*), parameter :: orthotropic_keys = 'youngs_modulus_1 youngs_modulus_2 poisson_ratio_12 shear_modulus_12'

@@ -34,7 +34,7 @@ contains
                   call check_motion(reader, 'step', i, j, trim(controlled_key(j, step%control(j))), scene, error)
                if (step%control(j) == control_force .and. motions(j)%pushes .and. step%target(j) < 0.0_wp .and. &
                    .not. scene%is_neat()) call reader%complain('step', i, trim(motions(j)%force_key), 'must be a '// &
-                                      'number at least 0 ('//trim(motions(j)%force_unit)//')', error)
+                                                               'number at least 0 ('//trim(motions(j)%force_unit)//')', error)
                if (j == motion_shift .and. .not. allocated(error)) call read_force_ratio(reader, i, scene, error)
                if (allocated(error)) return
             end do

@@ -4,7 +4,7 @@ module mfv_summary
    use mfv_case, only: case_type
    use mfv_contact_model, only: contact_model_type, new_contact_model
    use mfv_interior, only: has_interior
-   use mfv_kinds, only: wp
+   use mfv_kinds, only: pi, wp
    use mfv_load_extremes, only: over_rows, over_steps
    use mfv_motions, only: motions, motion_count => user_motions, motion_rotation, bulk_motions
    use mfv_observables, only: observable_place
@@ -39,7 +39,7 @@ contains
          call add_line(text, 'outcome', status_outcome(simulation%outcome)//': '//simulation%message)
          call group_fields(case, simulation, 'observables', seen, observed)
          call add_extremes(text, seen, simulation)
-         call add_contact(text, fields, model%scene%mesh%radial)
+         call add_contact(text, fields, observed, model)
          call add_line(text, 'nodes', to_text(model%nodes())//', in contact '//amount(fields, 'contact_nodes')// &
                        ', stuck '//amount(fields, 'stick_nodes')//', slipping '//amount(fields, 'slip_nodes'))
          if (model%tangential) call add_line(text, 'stick ratio', amount(fields, 'stick_ratio'))
@@ -86,10 +86,11 @@ contains
 
    !> The size of the contact: the half-width of one patch, or the total length of several patches and their number. `radial`: the
    !> surface is curved; lengths are along it, positions are x.
-   subroutine add_contact(text, fields, radial)
+   subroutine add_contact(text, fields, observed, model)
       character(:), allocatable, intent(inout) :: text
       type(field_type), intent(in) :: fields(:)
-      logical, intent(in) :: radial
+      real(wp), intent(in) :: observed(:)
+      type(contact_model_type), intent(in) :: model
       character(:), allocatable :: span
 
       span = ''
@@ -98,15 +99,27 @@ contains
          if (patches > 1) then
             call add_line(text, 'contact length', amount(fields, 'contact_length')//' in '//to_text(patches)//' patches'//span)
          else
-            if (radial .and. patches == 1) then
-               span = ' along the surface,'//span
-            else
-               span = ''
-            end if
+            span = ''
+            if (model%scene%mesh%radial .and. patches == 1) span = ' along the surface, '//trim(angles(observed, model))
             call add_line(text, 'contact half-width', amount(fields, 'contact_half_width')//span)
          end if
       end associate
    end subroutine add_contact
+
+   !> The angles of a contact of one patch from the origin of x.
+   pure function angles(observed, model) result(text)
+      real(wp), intent(in) :: observed(:)
+      type(contact_model_type), intent(in) :: model
+      character(len=60) :: text
+      real(wp), parameter :: degrees = 180.0_wp/pi
+      real(wp) :: half, middle
+
+      half = observed(observable_place('contact_half_width'))/model%scene%arc_radius()
+      middle = observed(observable_place('contact_centre'))/model%scene%arc_radius()
+      text = 'all around'
+      if (half < pi*(1.0_wp - visible)) text = 'from '//to_text((middle - half)*degrees, 4)//' to '// &
+                                               to_text((middle + half)*degrees, 4)//' degrees'
+   end function angles
 
    !> Observables of the last cycle. `walks`: whether the upper body does.
    subroutine add_last_cycle(text, fields, walks)
