@@ -89,8 +89,11 @@ def differences(
         ends = np.isfinite(changed)
         size = np.max(np.abs(actual[ends]), initial=scales.where_it_vanishes(name))
         error = np.max(np.abs(changed[ends] - actual[ends]), initial=0.0)
-        if scales.is_closed and name.startswith(("contact_centre", "patch_shift")):  # opposite to the origin of either sign
-            error = np.max(np.abs(np.abs(changed[ends]) - np.abs(actual[ends])), initial=0.0)
+        if scales.is_closed and name.startswith("patch_shift"):  # that of the centre, which is compared
+            continue
+        if scales.is_closed and name.startswith(("contact_edge", "stick_edge", "contact_centre")):  # up to whole turns
+            turns = np.round((changed[ends] - actual[ends]) / scales.around)
+            error = np.max(np.abs(changed[ends] - actual[ends] - turns * scales.around), initial=0.0)
         if error > max(max(tolerance, TENSION if "tension" in name else 0.0) * size, ROUND_OFF * scales.natural(name)):
             found[path] = float(error / size) if size > 0.0 else np.inf
     if not common:

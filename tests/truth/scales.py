@@ -65,6 +65,7 @@ class Scales:
         summary, x = result.summary, result.mesh.x
         #: A pin that fits its bore neatly: the mesh covers the circle.
         self.is_closed = "arc" in result.mesh and float(x[-1]) < float(np.max(x))
+        self.around = float(np.sum(result.mesh.width))
         steps = [*result.steps, summary]
         self.one = 1.0
         length = float(summary.get("contact_length", math.nan))

@@ -319,7 +319,7 @@ contains
          sign = merge(1.0_wp, -1.0_wp, side == 1)
          associate (stress => bulk + surface_stress_of(body%elasticity%material, samples%pressure, sign*samples%shear, &
                                                        samples%of_pressure, sign*samples%of_shear))
-            estimates(candidate_tension(side)) = maxval(hoop + stress)
+            estimates(candidate_tension(side)) = max(maxval(hoop + stress), 0.0_wp)
             if (.not. model%scene%is_neat()) &
                estimates(candidate_tension(side)) = max(estimates(candidate_tension(side)), maxval(hoop) + max(bulk, 0.0_wp) &
                                                         + between*maxval(abs(state%fields%shear)))

@@ -42,7 +42,7 @@ module mfv_zone_edges
       !> Whether the patch ends with the surface of a body, or with an interval there, where the pressure may be singular. At other
       !> edges it vanishes as the distance to the power `left_power` or `right_power`.
       logical :: left_ends = .false., right_ends = .false.
-      !> Length after which the surfaces repeat if the patch ends there and continues in the first one, else 0.
+      !> Length after which the surfaces repeat if the patch ends there and continues in the first one, which can be itself, else 0.
       real(wp) :: to_first = 0.0_wp
       real(wp) :: left_power = 0.5_wp, right_power = 0.5_wp
       !> Its stick zones from left to right; size 0 without any.
@@ -151,6 +151,11 @@ contains
       if (.not. edges%contact) return
       associate (last => patches(size(patches)))
          if (.not. last%to_first > 0.0_wp) return
+         if (size(patches) == 1) then
+            edges%contact_left = -0.5_wp*last%to_first
+            edges%contact_right = 0.5_wp*last%to_first
+            return
+         end if
          edges%patches = edges%patches - 1
          if (edges%patches > 1) return
          edges%contact_left = last%left
@@ -189,7 +194,7 @@ contains
          patches(i)%left = patches(i - 1)%right
       end do
       i = size(patches)
-      if (i > 1) then
+      if (i > 0) then
          if (model%scene%repeats_beyond(patches(1)%left) .and. model%scene%repeats_beyond(patches(i)%right)) &
             patches(i)%to_first = model%scene%repeat_length()
       end if

@@ -16,7 +16,7 @@ module mfv_contact_model
    use mfv_quadrature, only: gauss_points
    use mfv_tolerances, only: significant, visible
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
-                          motion_upper_bulk, motion_interference, motion_wear, arm_unit
+                          motion_upper_bulk, motion_interference, motion_wear, arm_unit, control_force
    use mfv_reference_indenter, only: indenter_type
    use mfv_clock, only: seconds_now
    use mfv_scene, only: scene_type
@@ -111,7 +111,7 @@ contains
       model%moves = scene%moves()
       call choose_mesh(scene, nodes, interval, model%growing)
       if (covers_period(scene, nodes, interval) .and. .not. scene%mesh%has_middle) call choose_middle(model%scene, nodes)
-      if (scene%is_neat() .and. .not. scene%mesh%has_middle) call turn_to_load(model%scene, interval)
+      if (scene%is_neat() .and. .not. scene%mesh%has_middle) call turn_to_load(model%scene)
       call model%build_compliance(nodes, interval)
       allocate (model%worn(nodes), model%wear(nodes), source=0.0_wp)
       call model%place_nodes()
@@ -575,32 +575,49 @@ contains
       scene%mesh%middle = interval*anint((place - sign(0.5_wp*scene%mesh%period, place))/interval)
    end subroutine choose_middle
 
-   !> Put the ends of the mesh around a neat fit opposite to the sum of the forces of all steps, where a gap opens if any does:
-   !> at an end of an interval of the width `interval`, length.
-   subroutine turn_to_load(scene, interval)
+   !> Put the ends of the mesh around a neat fit opposite to the largest force of the load history (the sum of equally large ones),
+   !> where a gap opens if any does.
+   subroutine turn_to_load(scene)
       type(scene_type), intent(inout) :: scene
-      real(wp), intent(in) :: interval
       integer, parameter :: along(2) = [motion_approach, motion_shift]
-      real(wp) :: load(2), all_loads
-      integer :: i
+      real(wp) :: now(2), sum_of_largest(2), largest
+      integer :: i, j
 
       scene%mesh%has_middle = .true.
       if (.not. allocated(scene%steps)) return
-      load = 0.0_wp
-      all_loads = 0.0_wp
+      now = 0.0_wp
+      largest = 0.0_wp
+      sum_of_largest = 0.0_wp
       do i = 1, size(scene%steps)
          associate (step => scene%steps(i))
-            load = load + step%target(along)
-            all_loads = all_loads + sum(abs(step%target(along)))
+            call take(step%target(along), step%control(along) == control_force)
             if (.not. allocated(step%path)) cycle
-            load = load + sum(step%path(along, :), dim=2)
-            all_loads = all_loads + sum(abs(step%path(along, :)))
+            do j = 1, size(step%path, 2)
+               call take(step%path(along, j), step%control(along) == control_force)
+            end do
          end associate
       end do
-      if (norm2(load) <= visible*all_loads) return
-      ! x grows to the right on a hole below, and on a disk below turned over.
-      load(2) = -sign(1.0_wp, scene%lower%curvature())*load(2)
-      scene%mesh%middle = interval*anint(scene%arc_radius()*atan2(load(2), load(1))/interval)
+      if (norm2(sum_of_largest) <= visible*largest) return
+      ! The right is at a positive angle on a hole below, at a negative one on a disk below.
+      sum_of_largest(2) = -sign(1.0_wp, scene%lower%curvature())*sum_of_largest(2)
+      scene%mesh%middle = scene%arc_radius()*atan2(sum_of_largest(2), sum_of_largest(1))
+      if (scene%mesh%middle < -0.5_wp*scene%repeat_length()*(1.0_wp - visible)) scene%mesh%middle = -scene%mesh%middle
+
+   contains
+
+      !> Follow a step to the `target` forces that are `given`; others stay.
+      subroutine take(target, given)
+         real(wp), intent(in) :: target(2)
+         logical, intent(in) :: given(2)
+
+         now = merge(target, now, given)
+         if (norm2(now) > largest*(1.0_wp + visible)) then
+            largest = norm2(now)
+            sum_of_largest = now
+         else if (norm2(now) >= largest*(1.0_wp - visible)) then
+            sum_of_largest = sum_of_largest + now
+         end if
+      end subroutine take
    end subroutine turn_to_load
 
    !> Undeformed gaps at arc lengths from the origin of x, lengths.
