@@ -169,7 +169,7 @@ typedef struct mfv_loads {
   int linear_solves;          /* so far */
   int unused;                 /* 0 */
 } mfv_loads;
-#define MFV_LOADS_INIT {sizeof(mfv_loads), {0.0, 0.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 0.0, 0.0}, 0.0, 0, 0, 0, 0, 0, 0}
+#define MFV_LOADS_INIT {sizeof(mfv_loads), {0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, 0.0, 0, 0, 0, 0, 0, 0}
 
 /* Present loads and motions; cheaper than the fields of "summary". Since 0.1.0. */
 int mfv_get_loads(const mfv_case *handle, mfv_loads *loads);

@@ -9,7 +9,7 @@ module mfv_interior
    use mfv_interior_half_plane, only: half_plane_load_type, new_half_plane_load
    use mfv_kinds, only: wp
    use mfv_material, only: material_type
-   use mfv_surface_tractions, only: find_traction_elements, traction_elements_type, zone_list_type
+   use mfv_surface_tractions, only: find_closed_elements, find_traction_elements, traction_elements_type, zone_list_type
    use mfv_tolerances, only: certified, significant
    implicit none
    private
@@ -106,7 +106,11 @@ contains
       seen = zones
       if (upper) seen%pair = zones%pair%with_reversed_shear()
       if (radial) seen%turn = self%outward/body%radius
-      call find_traction_elements(arc, width, pressure, self%side*shear, seen, longest, self%elements)
+      if (zones%closed) then
+         call find_closed_elements(arc, width, pressure, self%side*shear, seen%turn, longest, self%elements)
+      else
+         call find_traction_elements(arc, width, pressure, self%side*shear, seen, longest, self%elements)
+      end if
       if (zones%joined) call join_ends(self%elements, zones%period)
       associate (e => self%elements)
          if (self%body%deforms_as_circle()) then

@@ -17,7 +17,7 @@ module mfv_surface_tractions
    use mfv_tolerances, only: certified, significant, visible
    implicit none
    private
-   public :: zone_list_type, traction_elements_type, find_traction_elements, merged, root_shift
+   public :: find_closed_elements, zone_list_type, traction_elements_type, find_traction_elements, merged, root_shift
 
    !> Within half an interval, and not at its end, where edges lie that cannot be located: round-off must not decide.
    real(wp), parameter :: half_interval = 0.5_wp*(1.0_wp - significant)
@@ -30,8 +30,9 @@ module mfv_surface_tractions
       logical, allocatable :: sharp(:, :)
       type(near_field_type) :: pair
       real(wp) :: turn = 0.0_wp
-      !> Length after which the surface repeats, or 0; whether sharp edges are its ends.
+      !> Length after which the surface repeats, or 0; whether it is loaded all around a circle; whether sharp edges are its ends.
       real(wp) :: period = 0.0_wp
+      logical :: closed = .false.
       logical :: joined = .false.
       !> Middle of that period, length.
       real(wp) :: middle = 0.0_wp
@@ -144,6 +145,40 @@ contains
       elements%sharp = any(parts%sharp)
       elements%singular = any(parts%singular)
    end subroutine find_traction_elements
+
+   !> Elements all around a circle, with the forces and the moment of the nodes, as find_traction_elements: linear between the
+   !> nodes. `turn`: see zone_list_type.
+   subroutine find_closed_elements(arc, width, pressure, shear, turn, longest, elements)
+      real(wp), intent(in) :: arc(:), width(:), pressure(:), shear(:), turn, longest
+      type(traction_elements_type), intent(out) :: elements
+      complex(wp) :: traction(0:size(arc)), force
+      complex(wp), parameter :: i = (0.0_wp, 1.0_wp)
+      real(wp), allocatable :: knots(:)
+      real(wp) :: half
+      integer :: n, parts, j, k
+
+      n = size(arc)
+      traction(1:) = cmplx(pressure, shear, wp)
+      ! Linear interpolation reduces the force, the first harmonic, by the square of sin(half)/half.
+      half = 0.5_wp*turn*width(1)
+      force = sum(traction(1:)*exp(-i*turn*arc))/n
+      traction(1:) = traction(1:) + ((half/sin(half))**2 - 1.0_wp)*force*exp(i*turn*arc)
+      traction(0) = traction(n)
+      parts = max(1, ceiling(width(1)/longest))
+      allocate (elements%first(n*parts), elements%last(n*parts))
+      knots = [(arc(1) + (real(j, wp)/parts - 1.0_wp)*width(1), j=0, n*parts)]
+      elements%from = knots(:n*parts)
+      elements%to = knots(2:)
+      do j = 1, n
+         do k = 1, parts
+            associate (e => (j - 1)*parts + k, a => real(k - 1, wp)/parts, b => real(k, wp)/parts)
+               elements%first(e) = traction(j - 1) + a*(traction(j) - traction(j - 1))
+               elements%last(e) = traction(j - 1) + b*(traction(j) - traction(j - 1))
+            end associate
+         end do
+      end do
+      elements%edges = [knots(1), knots(n*parts + 1)]
+   end subroutine find_closed_elements
 
    !> Contact zone of each loaded node, 0 without load: the nearest; nodes outside all zones, or with a node without load between,
    !> form new ones.

@@ -103,6 +103,23 @@ def test_a_neat_pin_has_the_contact_of_persson_at_any_load() -> None:
     assert 1e3 < below < 1e9 and np.isnan(above)
 
 
+@pytest.mark.parametrize("seam", [0.0, 400.0])
+def test_stresses_go_on_across_the_seam(seam: float) -> None:
+    """Below the surface sigma_rr is the pressure everywhere, also where the contact spans the ends of the mesh (which a larger force of
+    an earlier step turns), in full contact and not."""
+    for start in ([], [press()]):
+        steps = [*start, mfv.Step(tangential_force=seam), mfv.Step(tangential_force=-200.0)]
+        result = solved(*(steps if seam else [*start, steps[-1]]), nodes=241)
+        angle = result.mesh.arc / RADIUS
+        for body, inwards in (("lower", 1 + 1e-9), ("upper", 1 - 1e-9)):
+            distance = RADIUS * inwards
+            found = stress(result, distance * np.sin(angle), RADIUS - distance * np.cos(angle), body=body)
+            assert found["sigma_rr"] == pytest.approx(-result.state.pressure, abs=0.02 * result.state.pressure.max())
+            assert found.tension.value == pytest.approx(
+                result.observables[f"{body}_tension"], abs=0.01 * result.state.pressure.max()
+            )
+
+
 def test_torque() -> None:
     """Uniform shear; gross sliding at 2 pi R^2 mu p0, which is the moment at the end."""
     limit = 2 * np.pi * RADIUS**2 * MU * lame_pressure(STEEL, BRONZE)

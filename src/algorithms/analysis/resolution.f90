@@ -496,7 +496,8 @@ contains
       type(simulation_type), intent(in) :: simulation
 
       associate (scene => simulation%contact%model%scene)
-         can_refine = .not. (allocated(scene%mesh%ends) .or. scene%lower%is_matrix() .or. needs_equal_intervals(scene))
+         can_refine = .not. (allocated(scene%mesh%ends) .or. scene%lower%is_matrix() .or. scene%is_neat() .or. &
+                             needs_equal_intervals(scene))
       end associate
    end function can_refine
 
@@ -531,7 +532,8 @@ contains
                   return
                end if
             end associate
-            if (distance > 0) cycle
+            if (distance > 0 .or. (model%scene%repeats_beyond(model%arc(node) + side*0.5_wp*model%width(node)) .and. &
+                                   in_contact(state%status(merge(1, model%nodes(), side > 0))))) cycle
             inner = [(min(max(node - side*i, 1), model%nodes()), i=0, 2)]
             associate (shear => abs(state%fields%shear(inner)))
                if (maxval(shear(:2) - shear(2:)) <= least_fall*shear(1)) cycle

@@ -1,6 +1,6 @@
 !> A scene: bodies, mesh, friction, load history and method. No files, no solution.
 module mfv_scene
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
    use mfv_body, only: body_type
    use mfv_compliance, only: coupling_full
    use mfv_near_field, only: near_field_type, pair_of
@@ -95,9 +95,9 @@ module mfv_scene
    !> then have an error of 0.3 of the wanted one as a median, and of 1.6 at most (docs/verification.md).
    real(wp), parameter :: friction_tolerance_part = 0.1_wp
 
-   !> Nodes of a mesh by default; and most nodes on account of an accuracy, of the points of a profile, and of these with
-   !> unequal intervals, whose compliance is a full matrix.
-   integer, parameter :: usual_nodes = 101, most_by_accuracy = 3001, most_by_points = 10001, most_refined = 2001
+   !> Nodes of a mesh by default, and around a neat fit; and most nodes on account of an accuracy, of the points of a profile,
+   !> and of these with unequal intervals, whose compliance is a full matrix.
+   integer, parameter :: usual_nodes = 101, nodes_around = 360, most_by_accuracy = 3001, most_by_points = 10001, most_refined = 2001
 
    !> Mesh settings of the user; what is not set is chosen from an estimate of the contact.
    type :: mesh_request_type
@@ -231,6 +231,7 @@ contains
       class(scene_type), intent(in) :: self
 
       nodes = min(self%mesh%nodes_for(self%method%accuracy), most_by_accuracy)
+      if (self%is_neat()) nodes = max(nodes, nodes_around)
       nodes = max(nodes, min(self%nodes_for_profile(), merge(most_refined, most_by_points, self%mesh%refined)))
    end function default_nodes
 
@@ -555,8 +556,8 @@ contains
    !> `contact_edge`, `stick_edge`: edges of the zones between nodes, ascending at the nodes with finite values, the left and the
    !> right one of each zone in turn; shape (nodes). `bulk`: its bulk stress, force/length^2. `available`: false for a rigid body or
    !> a given matrix. `fewest_elements`: see mfv_surface_tractions.
-   subroutine interior(self, upper, arc, width, pressure, shear, contact_edge, stick_edge, bulk, inside, available, &
-                       fewest_elements)
+   recursive subroutine interior(self, upper, arc, width, pressure, shear, contact_edge, stick_edge, bulk, inside, available, &
+                                 fewest_elements)
       class(scene_type), intent(in) :: self
       logical, intent(in) :: upper
       real(wp), intent(in), dimension(:) :: arc, width, pressure, shear, contact_edge, stick_edge
@@ -566,8 +567,21 @@ contains
       integer, intent(in), optional :: fewest_elements
       type(zone_list_type) :: zones
       real(wp) :: ratio
-      integer :: i, side
+      integer :: i, side, first
 
+      zones%closed = self%is_neat() .and. all(abs(pressure) > 0.0_wp)
+      first = 1
+      if (self%is_neat()) first = first_after_gap(pressure)
+      if (first > 1) then
+         ! A contact across the ends of the mesh, in one piece.
+         associate (order => [(i, i=first, size(arc)), (i, i=1, first - 1)], &
+                    turn => [(0.0_wp, i=first, size(arc)), (self%repeat_length(), i=1, first - 1)])
+            call self%interior(upper, arc(order) + turn, width(order), pressure(order), shear(order), &
+                               without_seam(self, contact_edge(order) + turn), without_seam(self, stick_edge(order) + turn), bulk, &
+                               inside, available, fewest_elements)
+         end associate
+         return
+      end if
       ratio = 1.0_wp
       if (self%mesh%radial) ratio = merge(self%upper%radius, self%lower%radius, upper)/self%arc_radius()
       zones%contact = pairs(contact_edge)
@@ -594,6 +608,27 @@ contains
       end if
       inside%bulk = bulk
    end subroutine interior
+
+   !> The first node after a gap of unloaded ones if the loaded ones at both ends belong together, else 1.
+   pure integer function first_after_gap(pressure) result(first)
+      real(wp), intent(in) :: pressure(:)
+      integer :: n
+
+      first = 1
+      n = size(pressure)
+      if (all(abs(pressure) > 0.0_wp) .or. .not. (abs(pressure(1)) > 0.0_wp .and. abs(pressure(n)) > 0.0_wp)) return
+      first = findloc(abs(pressure) > 0.0_wp, .false., dim=1, back=.true.)
+   end function first_after_gap
+
+   !> Edges without those at the end of the mesh, which is inside of a zone; NaN in their place.
+   pure function without_seam(scene, edges) result(cleared)
+      type(scene_type), intent(in) :: scene
+      real(wp), intent(in) :: edges(:)
+      real(wp) :: cleared(size(edges)), seam
+
+      seam = scene%mesh%middle + 0.5_wp*scene%repeat_length()
+      cleared = merge(ieee_value(1.0_wp, ieee_quiet_nan), edges, abs(edges - seam) <= visible*scene%repeat_length())
+   end function without_seam
 
    !> Whether a contact zone ends on the left (`side` -1) or right (1) where a body does, so that the pressure does not vanish
    !> there: at an `edge` that is the end of the body, or of the interval of its last node. `arc`, `width`: see interior.

@@ -5,7 +5,7 @@ module mfv_scene_indenter
                            shape_rounded_punch, shape_wave, shape_wedge
    use mfv_kinds, only: wp
    use mfv_near_field, only: near_field_type
-   use mfv_motions, only: motion_approach, control_force, control_displacement
+   use mfv_motions, only: motion_approach, motion_interference, control_force, control_displacement
    use mfv_reference_indenter, only: flat_indenter, indenter_type, power_indenter, rounded_punch_indenter
    use mfv_scene, only: scene_type
    implicit none
@@ -66,7 +66,9 @@ contains
 
       largest = half_width_of_forces(scene)
       indenter = indenter_of(scene)
-      approach = maxval(scene%steps%extreme(motion_approach, control_displacement))
+      ! An interference presses as an approach does.
+      approach = max(maxval(scene%steps%extreme(motion_approach, control_displacement)), 0.0_wp) &
+                 + max(maxval(scene%steps%extreme(motion_interference, control_displacement)), 0.0_wp)
       if (approach > 0.0_wp .and. .not. indenter%is_flat() .and. scene%modulus() > 0.0_wp) &
          largest = max(largest, indenter%half_width_at_approach(approach, scene%datum(), most))
    end function largest_half_width

@@ -15,8 +15,8 @@ module mfv_contact_path
    use mfv_inequalities, only: status_after
    use mfv_kinds, only: wp
    use mfv_linear_solvers, only: choose_stepping, new_contact_system
-   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_wear, control_force, &
-                          control_displacement
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_interference, motion_wear, &
+                          control_force, control_displacement
    use mfv_near_field, only: near_field_type
    use mfv_node_status
    use mfv_observer, only: observer_type
@@ -417,7 +417,7 @@ contains
       call self%set_rows(constraints, relaxing)
       contact = any(in_contact(self%state%status))
       if (.not. contact .and. constraints%load(motion_approach)%control == control_force) then
-         if (constraints%load(motion_approach)%rate > 0.0_wp .or. (self%model%scene%is_neat() .and. loads_any(constraints))) then
+         if (constraints%load(motion_approach)%rate > 0.0_wp .or. (self%model%scene%is_neat() .and. presses(constraints))) then
             call self%close_nearest(segment, iteration)
             ready = .false.
             return
@@ -440,14 +440,15 @@ contains
       end do
    end subroutine find_constraints
 
-   !> Whether a force that is to change would press a neat fit together, in whatever direction.
-   pure logical function loads_any(constraints)
+   !> Whether a force that is to change, in whatever direction, or a growing interference would press a neat fit together.
+   pure logical function presses(constraints)
       type(constraints_type), intent(in) :: constraints
 
       associate (load => constraints%load([motion_approach, motion_shift]))
-         loads_any = any(load%control == control_force .and. abs(load%rate) > 0.0_wp)
+         presses = any(load%control == control_force .and. abs(load%rate) > 0.0_wp) .or. &
+                   constraints%load(motion_interference)%rate > 0.0_wp
       end associate
-   end function loads_any
+   end function presses
 
    !> Hold a motion with a prescribed force (such as the rotation under a moment) if nothing determines it: with fewer than two
    !> nodes in contact, where only a zero force is possible; or if no node sticks and the motion only slides.

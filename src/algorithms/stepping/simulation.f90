@@ -19,7 +19,7 @@ module mfv_simulation
                                 over_rows, over_steps, slip_range_type
    use mfv_leap, only: apply_by_large_increments
    use mfv_load_summary, only: load_summary_type
-   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_interference, motion_wear, control_keep, &
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_wear, control_keep, &
                           control_force, control_displacement
    use mfv_node_status, only: event_none, event_step_end, event_stopped, in_contact
    use mfv_observer, only: observer_type
@@ -1060,13 +1060,13 @@ contains
    end subroutine apply_leg
 
    !> Give the prescribed motions of a path the values of its `targets`, which they have reached but for round-off: another segment
-   !> to the same targets is then without change. Without normal force or interference nothing remains in contact.
+   !> to the same targets is then without change. Without normal force, or pressures in a neat fit, nothing remains in contact.
    subroutine reach_exactly(path, targets)
       class(contact_path_type), intent(inout) :: path
       type(load_type), intent(in) :: targets(motion_count)
 
       where (path%model%moves .and. targets%control == control_displacement) path%state%fields%motion = targets%value
-      if (path%model%moves(motion_interference) .and. .not. targets(motion_interference)%value > 0.0_wp) call path%separate()
+      if (path%model%scene%is_neat()) call path%separate()
       associate (normal => targets(motion_approach))
          if (normal%control == control_force .and. .not. abs(normal%value) > 0.0_wp) call path%separate()
       end associate

@@ -476,7 +476,7 @@ contains
                                     "normals='radial' in &mesh", error)
             end if
          else
-            call reader%complain('body', hole, 'radius', 'a hole needs a disk of smaller radius inside it', error)
+            call reader%complain('body', hole, 'radius', 'a hole needs a disk of its radius or a smaller one in it', error)
          end if
       else if (touches_everywhere(scene)) then
          call reader%complain('body', 2, 'shape', 'two half-planes touch everywhere; one body must have another shape', error)

@@ -6,6 +6,7 @@ module mfv_mesh_reader
    use mfv_error, only: error_type
    use mfv_key_reader
    use mfv_kinds, only: pi, wp
+   use mfv_motions, only: control_keep, motion_interference
    use mfv_scene, only: scene_type
    use mfv_strings, only: list_of_words, string_type, to_text
    use mfv_tolerances, only: significant
@@ -52,7 +53,7 @@ contains
          call reader%complain('mesh', 1, keys(i)%text, 'has no effect for a matrix, which has its own nodes; remove it', error)
          return
       end do
-      if (scene%is_neat()) call check_neat(reader, error)
+      if (scene%is_neat()) call check_neat(reader, scene, error)
       if (allocated(error)) return
       scene%mesh%refined = reader%text_value('mesh', 1, 'refine') == 'edges'
       scene%mesh%nodes_by_accuracy = program_chooses_nodes(reader, scene)
@@ -61,6 +62,7 @@ contains
          scene%mesh%nodes = max(scene%mesh%nodes, scene%default_nodes())
          scene%mesh%nodes_by_patches = size(scene%steps) > 0 .and. .not. (scene%mesh%refined .or. needs_equal_intervals(scene))
       end if
+      if (scene%is_neat() .and. .not. reader%has('mesh', 1, 'nodes')) scene%mesh%nodes = scene%default_nodes()
       if (scene%mesh%refined) call check_refined(reader, scene, error)
       if (.not. allocated(error) .and. reader%has('mesh', 1, 'ends')) call read_ends(reader, scene, error)
       if (.not. allocated(error) .and. reader%has('mesh', 1, 'half_angle')) call read_half_angle(reader, scene, error)
@@ -84,9 +86,10 @@ contains
       if (.not. allocated(error)) call check_circle(reader, 2, scene, scene%upper, error)
    end subroutine read_mesh
 
-   !> Error for keys without effect in a neat fit, whose intervals cover the circle.
-   subroutine check_neat(reader, error)
+   !> Error for keys without effect in a neat fit, whose intervals cover the circle, and for wear that could make it a loose one.
+   subroutine check_neat(reader, scene, error)
       type(reader_type), intent(in) :: reader
+      type(scene_type), intent(in) :: scene
       type(error_type), allocatable, intent(out) :: error
       type(string_type), allocatable :: keys(:)
       integer, parameter :: fewest_around = 8
@@ -100,12 +103,34 @@ contains
                                  'circle; remove it', error)
          if (allocated(error)) return
       end do
+      if (scene%wear%acts() .and. .not. stays_pressed(scene)) &
+         call reader%complain('wear', 1, 'coefficient', 'in a neat fit needs an interference in the first step, which no step '// &
+                              'takes back: worn surfaces that part are no neat fit', error)
+      if (allocated(error)) return
       if (reader%integer_value('mesh', 1, 'nodes') < fewest_around) &
          call reader%complain('mesh', 1, 'nodes', 'must be at least '//to_text(fewest_around)//' around a neat fit', error)
       if (allocated(error)) return
       if (reader%text_value('mesh', 1, 'refine') == 'edges') &
          call reader%complain('mesh', 1, 'refine', "must be 'none' in a neat fit, whose equal intervals cover the circle", error)
    end subroutine check_neat
+
+   !> Whether an interference is pressed in first and never taken back.
+   pure logical function stays_pressed(scene)
+      type(scene_type), intent(in) :: scene
+      integer :: i
+
+      stays_pressed = size(scene%steps) > 0
+      do i = 1, size(scene%steps)
+         associate (step => scene%steps(i))
+            if (step%control(motion_interference) == control_keep) then
+               stays_pressed = stays_pressed .and. i > 1
+            else
+               stays_pressed = stays_pressed .and. step%target(motion_interference) > 0.0_wp
+               if (allocated(step%path)) stays_pressed = stays_pressed .and. all(step%path(motion_interference, :) > 0.0_wp)
+            end if
+         end associate
+      end do
+   end function stays_pressed
 
    !> The period of surfaces that repeat, which loads and datums depend on. Both bodies deform like half-planes.
    subroutine read_period(reader, scene, error)

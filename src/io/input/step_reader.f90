@@ -146,8 +146,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       if (scene%can_interfere()) return
-      call reader%complain(group, number, key, 'needs a disk and a hole of one radius, not of '//to_text(scene%lower%radius)// &
-                           ' and '//to_text(scene%upper%radius)//': the interference is by how much the pin is larger', error)
+      call reader%complain(group, number, key, 'needs a disk and a hole of one radius, not of '//to_text(scene%lower%radius, 12)// &
+                           ' and '//to_text(scene%upper%radius, 12)//': the interference is by how much the pin is larger', error)
    end subroutine check_interference
 
    !> Error for an interference with vertical normals in a case that does not prescribe the approach: at a given normal force the
