@@ -403,6 +403,8 @@ contains
          if (relative) call add_present(self%simulation%contact%state%fields, absolute)
       end if
       call check_step(absolute, self%case%scene, error)
+      if (.not. allocated(error)) call check_held(self%case%scene, step%control, &
+                                                  self%simulation%load(motion_approach)%control, error)
       if (allocated(error)) return
       if (self%simulation%outcome == MFV_INTERRUPTED) then
          self%simulation%outcome = MFV_COMPLETE
@@ -500,6 +502,19 @@ contains
          call set_error(error, MFV_BAD_ARGUMENT, 'cycles must be from 0 to '//to_text(most_cycles))
       end if
    end subroutine check_step
+
+   !> Error MFV_BAD_ARGUMENT for an interference with vertical normals at a given normal force, which would only lift the upper body.
+   !> `controls`: of the step; `kept`: that of the approach before it.
+   subroutine check_held(scene, controls, kept, error)
+      type(scene_type), intent(in) :: scene
+      integer, intent(in) :: controls(motion_count), kept
+      type(error_type), allocatable, intent(out) :: error
+
+      if (scene%mesh%radial .or. controls(motion_interference) == control_keep) return
+      if (merge(kept, controls(motion_approach), controls(motion_approach) == control_keep) == control_displacement) return
+      call set_error(error, MFV_BAD_ARGUMENT, 'an interference with vertical normals needs a prescribed approach, which '// &
+                     'holds the upper body in its place')
+   end subroutine check_held
 
    !> Outcome so far, see mfv_status: MFV_COMPLETE without failure; MFV_BAD_HANDLE for an empty contact.
    pure integer function status(self)

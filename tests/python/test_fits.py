@@ -232,6 +232,11 @@ def test_a_pad_pressed_in_is_a_prescribed_approach() -> None:
     assert found[1].state.pressure == pytest.approx(found[0].state.pressure, abs=1e-10 * found[0].state.pressure.max())
     assert found[1].state.shear == pytest.approx(found[0].state.shear, abs=1e-10 * found[0].state.pressure.max())
     assert found[1].summary.closing_force == pytest.approx(found[0].summary.normal_force, rel=1e-10)
+    with mfv.Case(mfv.Scene(*bodies, friction=mfv.Friction.coulomb(MU), mesh=mfv.Mesh(half_width=3.0, nodes=81))) as case:
+        with pytest.raises(errors.BadArgument, match="needs a prescribed approach, which holds the upper body"):
+            case.advance(interference=0.01)
+        case.advance(approach=0.0, interference=0.01)
+        assert case.loads.normal_force == pytest.approx(found[0].steps[0].normal_force, rel=1e-10)
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ module mfv_cycle
    use mfv_contact_state, only: contact_state_type
    use mfv_kinds, only: pi, wp
    use mfv_load_extremes, only: load_extremes_type
-   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift
+   use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_interference
    use mfv_slip_zones, only: slip_record_type
    use mfv_tolerances, only: certified, significant
    use mfv_zone_edges, only: find_zone_edges, zone_edges_type
@@ -152,15 +152,16 @@ contains
    !> (Tractions determine approach and rotation.)
    elemental logical function walks(self)
       class(cycle_type), intent(in) :: self
-      !> Least drift over the range of the shift; over the approach, which is elastic, and the change of the tractions; round-off.
+      !> Least drift over the range of the shift; over the approach or interference, which is elastic, and the change of the tractions; round-off.
       real(wp), parameter :: least = 1.0e-3_wp, over_change = 3.0_wp, round_off = significant
       real(wp) :: lowest, highest, elastic
 
       lowest = min(self%lowest_motion(motion_shift), self%start%motion(motion_shift))
       highest = max(self%highest_motion(motion_shift), self%start%motion(motion_shift))
-      elastic = max(abs(self%lowest_motion(motion_approach)), abs(self%highest_motion(motion_approach)))
+      elastic = max(abs(self%lowest_motion(motion_approach)), abs(self%highest_motion(motion_approach)), &
+                    abs(self%highest_motion(motion_interference)))
       walks = abs(self%drift(motion_shift)) > max(least*(highest - lowest), over_change*self%change*elastic, &
-                                                  round_off*max(abs(lowest), abs(highest)))
+                                                  round_off*max(abs(lowest), abs(highest), elastic))
    end function walks
 
    !> Dissipated energy per unit thickness: force.

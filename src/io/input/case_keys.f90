@@ -162,7 +162,8 @@ contains
       type(catalogue_type), intent(inout) :: keys
 
       call keys%add('mesh', 'nodes', kind_integer, 'number of equal intervals; nodes are their centres; without '// &
-                    'half_width, half_angle, period and ends more by default for a small accuracy in &solver', default='101', &
+                    'half_width, half_angle, period and ends more by default for a small accuracy in &solver; around a neat '// &
+                    'fit 360 by default', default='101', &
                     lower=1.0_wp, upper=most_nodes)
       call keys%add('mesh', 'half_width', kind_real, 'the intervals cover [-half_width, half_width] along the surface; if '// &
                     'omitted: chosen from an estimate of the contact, and extended when the contact reaches its '// &
