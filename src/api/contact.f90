@@ -503,7 +503,8 @@ contains
       end if
    end subroutine check_step
 
-   !> Error MFV_BAD_ARGUMENT for an interference with vertical normals at a given normal force, which would only lift the upper body.
+   !> Error MFV_BAD_ARGUMENT for an interference with vertical normals at a given normal force, which would only lift the upper
+   !> body.
    !> `controls`: of the step; `kept`: that of the approach before it.
    subroutine check_held(scene, controls, kept, error)
       type(scene_type), intent(in) :: scene

@@ -152,7 +152,8 @@ contains
    !> (Tractions determine approach and rotation.)
    elemental logical function walks(self)
       class(cycle_type), intent(in) :: self
-      !> Least drift over the range of the shift; over the approach or interference, which is elastic, and the change of the tractions; round-off.
+      !> Least drift over the range of the shift; over the approach or interference, which is elastic, and the change of the
+      !> tractions; round-off.
       real(wp), parameter :: least = 1.0e-3_wp, over_change = 3.0_wp, round_off = significant
       real(wp) :: lowest, highest, elastic
 
