@@ -142,7 +142,7 @@ def test_keys_are_given_by_name_and_only_those_there_are() -> None:
 
 def test_the_library_judges() -> None:
     for scene, message in (
-        (cylinder(mfv.Step(normal_force=-1.0)), r"scene: &step normal_force=-1: must be a number at least 0"),
+        (cylinder(mfv.Step(normal_force=-1.0)), r"scene: &step 1 normal_force=-1: must be a number at least 0"),
         (cylinder(mfv.Step(normal_force=float("nan"))), r"scene: 'step\(1\)%normal_force': the value is not finite"),
         (cylinder(mesh=mfv.Mesh(nodes=10**12)), "nodes=1e12: must be a whole number from 1 to 100000000"),
         (cylinder(mesh=mfv.Mesh(nodes=61.5)), "nodes=61.5: must be a whole number"),
