@@ -210,7 +210,7 @@ def _surface_at(result: Result, body: str, arc: Array) -> tuple[Array, Array, Ar
 
 def is_radial(result: Result) -> bool:
     """Whether normals are radial, so that places along the surface are angles."""
-    return bool(keys(result.attributes["input"]).get("mesh%normals", "vertical").lower() == "radial")
+    return "arc" in result.mesh and bool(keys(result.attributes["input"]).get("mesh%normals", "vertical").lower() == "radial")
 
 
 def drawn_at(result: Result, arc: Array | None = None) -> Array:

@@ -67,8 +67,7 @@ def along_surface(result: Result) -> tuple[str, str, str]:
 
 def intervals(result: Result) -> tuple[np.ndarray, np.ndarray]:
     """Both ends of the intervals of the nodes, as drawn."""
-    places = drawn_at(result)
-    half = 0.5 * (drawn_at(result, result.mesh.width) if is_radial(result) else result.mesh.width)
+    places, half = drawn_at(result), 0.5 * drawn_at(result, result.mesh.width)
     return places - half, places + half
 
 

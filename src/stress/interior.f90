@@ -110,8 +110,8 @@ contains
          call find_closed_elements(arc, width, pressure, self%side*shear, seen%turn, longest, self%elements)
       else
          call find_traction_elements(arc, width, pressure, self%side*shear, seen, longest, self%elements)
+         if (zones%joined) call join_ends(self%elements, zones%period)
       end if
-      if (zones%joined) call join_ends(self%elements, zones%period)
       associate (e => self%elements)
          if (self%body%deforms_as_circle()) then
             self%length = body%radius

@@ -64,7 +64,8 @@ module mfv_certificate
       !> Largest traction so far, force/length^2; largest force of every motion so far.
       real(wp) :: traction_scale = 0.0_wp, force_scale(motion_count) = 0.0_wp
       !> Largest displacements and energy so far.
-      real(wp) :: normal = 0.0_wp, tangential = 0.0_wp, energy = 0.0_wp
+      real(wp) :: normal = 0.0_wp
+      real(wp), private :: tangential = 0.0_wp, energy = 0.0_wp
       !> Work of the loads so far (energy per unit thickness, force), and the sum of its magnitudes by load and increment. In
       !> rolling, the works of tangential force and moment nearly cancel.
       real(wp) :: work = 0.0_wp, gross_work = 0.0_wp

@@ -284,7 +284,7 @@ contains
 
    contains
 
-      !> What the tangential stress at the samples has in addition on a circle (surface_stress of mfv_interior_circle).
+      !> What the tangential stress at the samples has in addition around a neat fit (surface_stress of mfv_interior_circle).
       function hoop_stress(body)
          type(body_type), intent(in) :: body
          real(wp) :: hoop_stress(size(samples%arc)), angle(size(samples%arc)), kappa
@@ -303,7 +303,7 @@ contains
          integer, intent(in) :: side
          !> Part of the shear that a tension between the samples may have, so that states with and without it differ.
          real(wp), parameter :: between = 0.1_wp
-         real(wp) :: bulk, hoop(size(samples%arc)), sign
+         real(wp) :: bulk, hoop, sign
 
          estimates([candidate_tension(side), candidate_von_mises(side)]) = -1.0_wp
          if (.not. has_interior(body) .or. body%elasticity%is_layered()) return
@@ -315,14 +315,15 @@ contains
          ! A circle is in tension also beside a contact without shear, in proportion to the force.
          hoop = 0.0_wp
          if (body%deforms_as_circle()) hoop = state%fields%force(motion_approach)/(pi*body%radius)
-         if (body%deforms_as_circle() .and. model%scene%is_neat()) hoop = hoop_stress(body)
          sign = merge(1.0_wp, -1.0_wp, side == 1)
          associate (stress => bulk + surface_stress_of(body%elasticity%material, samples%pressure, sign*samples%shear, &
                                                        samples%of_pressure, sign*samples%of_shear))
-            estimates(candidate_tension(side)) = max(maxval(hoop + stress), 0.0_wp)
-            if (.not. model%scene%is_neat()) &
-               estimates(candidate_tension(side)) = max(estimates(candidate_tension(side)), maxval(hoop) + max(bulk, 0.0_wp) &
-                                                        + between*maxval(abs(state%fields%shear)))
+            if (model%scene%is_neat()) then
+               estimates(candidate_tension(side)) = max(maxval(hoop_stress(body) + stress), 0.0_wp)
+            else
+               estimates(candidate_tension(side)) = hoop + max(max(bulk, 0.0_wp) + between*maxval(abs(state%fields%shear)), &
+                                                               maxval(stress))
+            end if
             if (body%yield_strength > 0.0_wp) &
                estimates(candidate_von_mises(side)) = largest_von_mises(model, state, patches, samples, stress, body, side, bulk)
          end associate

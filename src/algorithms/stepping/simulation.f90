@@ -1066,9 +1066,9 @@ contains
       type(load_type), intent(in) :: targets(motion_count)
 
       where (path%model%moves .and. targets%control == control_displacement) path%state%fields%motion = targets%value
-      if (path%model%scene%is_neat()) call path%separate()
       associate (normal => targets(motion_approach))
-         if (normal%control == control_force .and. .not. abs(normal%value) > 0.0_wp) call path%separate()
+         if (path%model%scene%is_neat() .or. (normal%control == control_force .and. .not. normal%value > 0.0_wp)) &
+            call path%separate()
       end associate
    end subroutine reach_exactly
 

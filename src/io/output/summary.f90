@@ -84,8 +84,8 @@ contains
       end associate
    end subroutine summarize
 
-   !> The size of the contact: the half-width of one patch, or the total length of several patches and their number. `radial`: the
-   !> surface is curved; lengths are along it, positions are x.
+   !> The size of the contact: the half-width of one patch, or the total length of several patches and their number. With radial
+   !> normals lengths are along the surface, and the contact is between two angles.
    subroutine add_contact(text, fields, observed, model)
       character(:), allocatable, intent(inout) :: text
       type(field_type), intent(in) :: fields(:)
