@@ -31,7 +31,7 @@ typedef enum mfv_status {
 
 /* Motions of the upper body, bulk stresses of either body, their interference, and how many there are: indices of the arrays below.
  * Each has a displacement and a force:
- *   MFV_APPROACH  approach [length];                      normal force P >= 0 [force/length]
+ *   MFV_APPROACH  approach [length];                      normal force P [force/length], >= 0 except in a neat fit
  *   MFV_SHIFT     shift [length], to the right;           tangential force Q [force/length], on the lower body to the right
  *   MFV_ROTATION  rotation [radians], counterclockwise;   moment M [force], counterclockwise, about the centre of rotation
  *   MFV_LOWER_BULK_STRESS, MFV_UPPER_BULK_STRESS

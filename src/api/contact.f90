@@ -472,10 +472,7 @@ contains
       logical :: strains(motion_count)
 
       strains = motions%is_stress .and. step%control /= control_keep
-      wrong = findloc(motions%pushes .and. step%control == control_force .and. step%target < 0.0_wp, .true., dim=1)
-      if (scene%is_neat()) wrong = 0
-      if (step%control(motion_interference) == control_displacement .and. step%target(motion_interference) < 0.0_wp) &
-         wrong = motion_interference
+      wrong = findloc(scene%cannot_be_negative([(i, i=1, motion_count)], step%control) .and. step%target < 0.0_wp, .true., dim=1)
       if (any(step%control == control_both)) then
          call set_error(error, MFV_BAD_ARGUMENT, 'prescribe either the force or the displacement of a direction, not both')
       else if (any(step%control < control_keep .or. step%control > control_displacement)) then
@@ -511,8 +508,8 @@ contains
       integer, intent(in) :: controls(motion_count), kept
       type(error_type), allocatable, intent(out) :: error
 
-      if (scene%mesh%radial .or. controls(motion_interference) == control_keep) return
-      if (merge(kept, controls(motion_approach), controls(motion_approach) == control_keep) == control_displacement) return
+      if (controls(motion_interference) == control_keep) return
+      if (scene%holds_for_interference(merge(kept, controls(motion_approach), controls(motion_approach) == control_keep))) return
       call set_error(error, MFV_BAD_ARGUMENT, 'an interference with vertical normals needs a prescribed approach, which '// &
                      'holds the upper body in its place')
    end subroutine check_held

@@ -11,6 +11,7 @@ import re
 import numpy as np
 
 import mfv
+from mfv.stress import is_radial
 
 #: Names of sides in those of fields.
 SIDES = [("left", "right")]
@@ -64,7 +65,7 @@ class Scales:
     def __init__(self, result: mfv.Result) -> None:
         summary, x = result.summary, result.mesh.x
         #: A pin that fits its bore neatly: the mesh covers the circle.
-        self.is_closed = "arc" in result.mesh and float(x[-1]) < float(np.max(x))
+        self.is_closed = is_radial(result) and result.scene.lower_radius == result.scene.upper_radius
         self.around = float(np.sum(result.mesh.width))
         steps = [*result.steps, summary]
         self.one = 1.0

@@ -532,7 +532,7 @@ contains
                   return
                end if
             end associate
-            if (distance > 0 .or. (model%scene%repeats_beyond(model%arc(node) + side*0.5_wp*model%width(node)) .and. &
+            if (distance > 0 .or. (model%repeats_beyond(node, side) .and. &
                                    in_contact(state%status(merge(1, model%nodes(), side > 0))))) cycle
             inner = [(min(max(node - side*i, 1), model%nodes()), i=0, 2)]
             associate (shear => abs(state%fields%shear(inner)))

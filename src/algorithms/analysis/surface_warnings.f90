@@ -76,7 +76,7 @@ contains
             do i = 1, size(contact)
                if (.not. contact(i)) cycle
                if (any(contact(max(i + side, 1):min(i + side, size(contact))))) cycle
-               if (.not. ends_at(i, side) .or. repeats_beyond(i, side)) cycle
+               if (.not. ends_at(i, side) .or. simulation%contact%model%repeats_beyond(i, side)) cycle
                if (body%has_sharp_ends()) then
                   if (.not. misses_corner(i, side)) cycle
                   call add_text(warnings, 'no interval of the mesh ends at the corner of the '//name//' body, x = '// &
@@ -115,15 +115,6 @@ contains
             end_of = model%scene%x_of_arc(model%arc(node) + side*0.5_wp*model%width(node))
          end associate
       end function end_of
-
-      !> Whether the surface repeats beyond the left (-1) or right (1) end of the interval of a node.
-      pure logical function repeats_beyond(node, side)
-         integer, intent(in) :: node, side
-
-         associate (model => simulation%contact%model)
-            repeats_beyond = model%scene%repeats_beyond(model%arc(node) + side*0.5_wp*model%width(node))
-         end associate
-      end function repeats_beyond
 
       !> Whether the surface of the body ends before the next node.
       pure logical function ends_at(node, side)

@@ -79,6 +79,7 @@ module mfv_contact_model
       procedure :: force
       procedure :: resultant
       procedure :: reaches_end
+      procedure :: repeats_beyond
       procedure :: centre_height
       procedure :: rolls
       procedure :: rolled
@@ -484,6 +485,14 @@ contains
       reaches_end = contact(1) .and. self%scene%touchable(self%arc(1) - self%width(1)) &
                     .or. contact(n) .and. self%scene%touchable(self%arc(n) + self%width(n))
    end function reaches_end
+
+   !> Whether the surfaces repeat beyond the left (`side` -1) or right (1) end of the interval of a node.
+   pure logical function repeats_beyond(self, node, side)
+      class(contact_model_type), intent(in) :: self
+      integer, intent(in) :: node, side
+
+      repeats_beyond = self%scene%repeats_beyond(self%arc(node) + side*0.5_wp*self%width(node))
+   end function repeats_beyond
 
    !> Number of nodes that can still be added at either end; limited on a circle, and where `half_width` is given, which is then far
    !> from the contact by mistake.

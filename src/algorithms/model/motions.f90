@@ -43,7 +43,7 @@ module mfv_motions
       !> The residual of its balance with the tractions, and its meaning.
       character(len=26) :: balance
       character(len=40) :: balance_meaning
-      !> Whether its force cannot be negative, except in a neat fit.
+      !> Whether what a step prescribes of it first (first_control) cannot be negative; a force can in a neat fit.
       logical :: pushes = .false.
       !> Whether its arms are lengths, so that its force is a moment (wear: an energy).
       logical :: turns = .false.
@@ -102,7 +102,8 @@ module mfv_motions
                                    target='target of the interference: by how much the radius of a pin exceeds that of its '// &
                                    'bore, or a pad is higher than its place; closes all gaps', &
                                    force_target='', balance='closing_force_balance', &
-                                   balance_meaning='closing force - sum of the pressure', optional=.true., is_known=.true.), &
+                                   balance_meaning='closing force - sum of the pressure', pushes=.true., optional=.true., &
+                                   is_known=.true.), &
                                    motion_type( &
                                    key='wear', force_key='wear_energy', force_name='energy of wear', unit='1', &
                                    force_unit='force', meaning='part of the wear of a block of cycles', &

@@ -8,7 +8,8 @@ module mfv_scene
    use mfv_interior, only: has_interior, interior_type, new_interior
    use mfv_kinds, only: pi, wp
    use mfv_material, only: plane_strain
-   use mfv_motions, only: motions, motion_approach, motion_count, motion_rotation, control_keep, control_force, control_displacement
+   use mfv_motions, only: motions, motion_approach, motion_count, motion_rotation, control_keep, control_force, &
+                          control_displacement, first_control
    use mfv_profile_sampling, only: sufficient_interval
    use mfv_surface_tractions, only: zone_list_type
    use mfv_tolerances, only: visible
@@ -168,6 +169,8 @@ module mfv_scene
       procedure :: last_touchable
       procedure :: can_have_bulk_stress
       procedure :: can_interfere
+      procedure :: holds_for_interference
+      procedure :: cannot_be_negative
       procedure :: can_repeat
       procedure :: interior
    end type scene_type
@@ -543,6 +546,24 @@ contains
       can_interfere = self%is_neat() .or. .not. self%mesh%radial
    end function can_interfere
 
+   !> Whether the upper body keeps its place against an interference, under a `control` of the approach: at a given normal force
+   !> with vertical normals it would only be lifted.
+   pure logical function holds_for_interference(self, control)
+      class(scene_type), intent(in) :: self
+      integer, intent(in) :: control
+
+      holds_for_interference = self%mesh%radial .or. control == control_displacement
+   end function holds_for_interference
+
+   !> Whether the target of a motion under a control must be at least 0.
+   elemental logical function cannot_be_negative(self, motion, control)
+      class(scene_type), intent(in) :: self
+      integer, intent(in) :: motion, control
+
+      cannot_be_negative = motions(motion)%pushes .and. control == first_control(motion) .and. &
+                           .not. (control == control_force .and. self%is_neat())
+   end function cannot_be_negative
+
    !> Whether a motion displaces surfaces that repeat alike in every period: not a rotation or a bulk stress.
    pure logical function can_repeat(self, motion)
       class(scene_type), intent(in) :: self
@@ -571,7 +592,7 @@ contains
 
       zones%closed = self%is_neat() .and. all(abs(pressure) > 0.0_wp)
       first = 1
-      if (self%is_neat()) first = first_after_gap(pressure)
+      if (self%is_neat()) first = last_in_gap(pressure)
       if (first > 1) then
          ! A contact across the ends of the mesh, in one piece.
          associate (order => [(i, i=first, size(arc)), (i, i=1, first - 1)], &
@@ -609,8 +630,8 @@ contains
       inside%bulk = bulk
    end subroutine interior
 
-   !> The first node after a gap of unloaded ones if the loaded ones at both ends belong together, else 1.
-   pure integer function first_after_gap(pressure) result(first)
+   !> The last unloaded node if the loaded ones at both ends belong together, else 1.
+   pure integer function last_in_gap(pressure) result(first)
       real(wp), intent(in) :: pressure(:)
       integer :: n
 
@@ -618,7 +639,7 @@ contains
       n = size(pressure)
       if (all(abs(pressure) > 0.0_wp) .or. .not. (abs(pressure(1)) > 0.0_wp .and. abs(pressure(n)) > 0.0_wp)) return
       first = findloc(abs(pressure) > 0.0_wp, .false., dim=1, back=.true.)
-   end function first_after_gap
+   end function last_in_gap
 
    !> Edges without those at the end of the mesh, which is inside of a zone; NaN in their place.
    pure function without_seam(scene, edges) result(cleared)

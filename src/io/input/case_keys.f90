@@ -8,8 +8,8 @@ module mfv_case_keys
    use mfv_keys
    use mfv_kinds, only: wp
    use mfv_material, only: plane_names
-   use mfv_motions, only: motions, motion_count => user_motions, motion_shift, motion_interference, control_force, &
-                          control_displacement, controlled_key, first_control
+   use mfv_motions, only: motions, motion_count => user_motions, motion_shift, control_force, control_displacement, &
+                          controlled_key, first_control
    use mfv_scene, only: algorithm_names, integration_names, most_cycles, solver_names, stepping_names
    implicit none
    private
@@ -245,7 +245,7 @@ contains
                else
                   call keys%add('step', trim(motion%key), kind_real, trim(motion%target), unit=trim(motion%unit))
                end if
-               if (i == motion_interference) keys%keys(keys%size)%lower = 0.0_wp
+               if (motion%pushes .and. motion%is_known) keys%keys(keys%size)%lower = 0.0_wp
             end do
          end associate
          if (i == motion_shift) call keys%add('step', 'force_ratio', kind_real, 'target Q/(mu P) instead of '// &
@@ -272,7 +272,7 @@ contains
          do control = first_control(i), control_displacement
             name = controlled_key(i, control)
             call add_history_key(trim(name), trim(merge(motions(i)%force_unit//'  ', motions(i)%unit, control == control_force)))
-            if (i == motion_interference) keys%keys(keys%size)%lower = 0.0_wp
+            if (motions(i)%pushes .and. motions(i)%is_known) keys%keys(keys%size)%lower = 0.0_wp
          end do
          if (i == motion_shift) call add_history_key('force_ratio', '')
       end do

@@ -217,7 +217,7 @@ contains
          call check_motion(reader, group, 1, i, key, scene, error)
          if (allocated(error)) return
          row = findloc(targets(i, :) < 0.0_wp, .true., dim=1)
-         if (step%control(i) == control_force .and. motions(i)%pushes .and. row > 0 .and. .not. scene%is_neat()) &
+         if (step%control(i) == control_force .and. scene%cannot_be_negative(i, control_force) .and. row > 0) &
             call reader%complain(group, 1, key, trim(motions(i)%force_key)//' must be at least 0, not '// &
                                  to_text(targets(i, max(row, 1)))//' in row '//to_text(row), error)
          if (i == motion_shift .and. step%control(i) == control_force .and. .not. scene%friction%acts() .and. &

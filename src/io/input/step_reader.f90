@@ -32,9 +32,9 @@ contains
                call read_target(reader, i, j, step%control(j), step%target(j), error)
                if (step%control(j) /= control_keep .and. .not. allocated(error)) &
                   call check_motion(reader, 'step', i, j, trim(controlled_key(j, step%control(j))), scene, error)
-               if (step%control(j) == control_force .and. motions(j)%pushes .and. step%target(j) < 0.0_wp .and. &
-                   .not. scene%is_neat()) call reader%complain('step', i, trim(motions(j)%force_key), 'must be a '// &
-                                                               'number at least 0 ('//trim(motions(j)%force_unit)//')', error)
+               if (scene%cannot_be_negative(j, step%control(j)) .and. step%target(j) < 0.0_wp) &
+                  call reader%complain('step', i, trim(controlled_key(j, step%control(j))), 'must be a number at least 0 ('// &
+                                       trim(motions(j)%force_unit)//')', error)
                if (j == motion_shift .and. .not. allocated(error)) call read_force_ratio(reader, i, scene, error)
                if (allocated(error)) return
             end do
@@ -123,8 +123,10 @@ contains
          call reader%complain(group, number, key, 'has no effect that repeats with the period in &mesh; remove one of them', error)
          return
       end if
-      if (motion == motion_interference) then
-         call check_interference(reader, group, number, key, scene, error)
+      if (motion == motion_interference .and. .not. scene%can_interfere()) then
+         call reader%complain(group, number, key, 'needs a disk and a hole of one radius, not of '// &
+                              to_text(scene%lower%radius, 12)//' and '//to_text(scene%upper%radius, 12)// &
+                              ': the interference is by how much the pin is larger', error)
          return
       end if
       upper = motion == motion_upper_bulk
@@ -137,19 +139,6 @@ contains
                            kind//'; a bulk stress needs an elastic half_plane, wedge, power, rounded_punch or profile', error)
    end subroutine check_motion
 
-   !> Error for an interference of circles that are not a neat fit.
-   subroutine check_interference(reader, group, number, key, scene, error)
-      type(reader_type), intent(in) :: reader
-      character(*), intent(in) :: group, key
-      integer, intent(in) :: number
-      type(scene_type), intent(in) :: scene
-      type(error_type), allocatable, intent(out) :: error
-
-      if (scene%can_interfere()) return
-      call reader%complain(group, number, key, 'needs a disk and a hole of one radius, not of '//to_text(scene%lower%radius, 12)// &
-                           ' and '//to_text(scene%upper%radius, 12)//': the interference is by how much the pin is larger', error)
-   end subroutine check_interference
-
    !> Error for an interference with vertical normals in a case that does not prescribe the approach: at a given normal force the
    !> upper body would only be lifted.
    subroutine check_held(reader, scene, error)
@@ -158,11 +147,10 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer :: i, control
 
-      if (scene%mesh%radial) return
       control = control_force
       do i = 1, size(scene%steps)
          if (scene%steps(i)%control(motion_approach) /= control_keep) control = scene%steps(i)%control(motion_approach)
-         if (control == control_displacement .or. scene%steps(i)%control(motion_interference) == control_keep) cycle
+         if (scene%holds_for_interference(control) .or. scene%steps(i)%control(motion_interference) == control_keep) cycle
          call reader%complain(merge('history', 'step   ', scene%steps(i)%row > 0), merge(1, i, scene%steps(i)%row > 0), &
                               'interference', 'needs a prescribed approach, which holds the upper body in its place, such as '// &
                               'approach=0.0; at a given normal_force it would only be lifted', error)
