@@ -260,8 +260,8 @@ class Case:
 
         Loads change linearly from their present values to the targets; a load without a target is constant. Prescribe
         `normal_force` [force/length] or `approach` [length], `tangential_force` or `shift` likewise, `moment` [force] or
-        `rotation` [radians], `lower_bulk_stress` and `upper_bulk_stress` [force/length^2], `interference` [length]. `relative`: targets are increments
-        of the present loads. `friction`: whether friction acts during this step (None: it does, as for a Step). `cycles`:
+        `rotation` [radians], `lower_bulk_stress` and `upper_bulk_stress` [force/length^2], `interference` [length].
+        `relative`: targets are increments of the present loads. `friction`: whether friction acts during this step (None: it does, as for a Step). `cycles`:
         number of cycles to the targets and back; they end early when the tractions of two consecutive cycles differ by at most
         `steady_tolerance` times the largest one (0: never). `check`: as for `run`.
         Raises BadArgument.
@@ -325,8 +325,8 @@ class Case:
 
         The tangent of contact and friction depends on the direction of motion: `direction` has a number for every motion, such
         as (0, 1) for a shift to the right; if omitted, the direction of the last step is used, and nodes that were pressed without
-        friction stick if the scene has friction. `motions`: 2, 3 with the rotation, or 6 with bulk stresses and interference. Raises
-        BadArgument if the contact does not determine it.
+        friction stick if the scene has friction. `motions`: 2, 3 with the rotation, or 6 with bulk stresses and interference.
+        Raises BadArgument if the contact does not determine it.
         """
         towards = None
         if direction is not None:

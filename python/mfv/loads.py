@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 
 class Motion(NamedTuple):
-    """A motion of the upper body, a bulk stress or the interference, and its conjugate force: the names of keys, fields and attributes."""
+    """A motion of the upper body, a bulk stress or the interference, and its conjugate force: names of keys, fields, attributes."""
 
     displacement: str
     force: str
