@@ -137,14 +137,13 @@ contains
       if (self%traction_scale > 0.0_wp) call note(self, continuity, jump, scale)
    end subroutine note_jump
 
-   !> Record the estimated errors of an interval of large increments: of the tractions at its end, force/length^2, and of the
-   !> dissipated energy, force. `work`: dissipated energy of the interval, force.
-   pure subroutine note_large_increment(self, traction_error, work_error, work)
+   !> Record the estimated errors of an interval of large increments: of the tractions at its end and of the dissipated energy, with
+   !> what they are relative to: `traction`, force/length^2, and `work`, force.
+   pure subroutine note_large_increment(self, traction_error, traction, work_error, work)
       class(certificate_type), intent(inout) :: self
-      real(wp), intent(in) :: traction_error, work_error, work
+      real(wp), intent(in) :: traction_error, traction, work_error, work
 
-      if (self%traction_scale > 0.0_wp) &
-         self%increment_traction_error = max(self%increment_traction_error, traction_error/self%traction_scale)
+      if (traction > 0.0_wp) self%increment_traction_error = max(self%increment_traction_error, traction_error/traction)
       if (work > 0.0_wp) self%increment_dissipation_error = max(self%increment_dissipation_error, work_error/work)
    end subroutine note_large_increment
 

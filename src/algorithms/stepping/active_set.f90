@@ -53,6 +53,9 @@ contains
       integer :: tried(size(path%state%status), most_solves)
       real(wp), dimension(size(path%state%status)) :: hold, ahead, before
       real(wp) :: allowed
+      integer, allocatable :: consistent(:)
+      type(contact_fields_type) :: consistent_fields
+      real(wp), allocatable :: consistent_slip(:)
       logical :: possible, by_edges, rough
       integer :: solve, first, looks
 
@@ -76,6 +79,11 @@ contains
          path%system%allowed = allowed
          if (.not. possible) return
          call find_wanted(path, segment, fields, wanted, held)
+         if (all(wanted == path%state%status) .and. .not. rough) then
+            consistent = wanted
+            consistent_fields = fields
+            consistent_slip = path%state%stuck_slip
+         end if
          found = all(wanted == path%state%status)
          if (rough .and. count(wanted /= path%state%status) <= few) then
             rough = .false.
@@ -95,14 +103,14 @@ contains
             end if
             if (present(held)) then
                call find_slipping_on(path, segment, fields, held, wanted)
-               found = .not. reverses(path, fields, held)
+               found = .not. any(reversed(path, fields, held))
             end if
             if (all(wanted == path%state%status)) return
             found = .false.
          end if
          if (by_edges) call move_edges(path%state%status, wanted, held)
          if (found .and. is_among(wanted, tried(:, :solve))) then
-            found = .not. reverses(path, fields, held)
+            found = .not. any(reversed(path, fields, held))
             return
          end if
          found = .false.
@@ -110,6 +118,13 @@ contains
          call path%set_status(wanted /= path%state%status, wanted)
          path%state%stuck_slip = hold
          if (.not. is_among(wanted, tried(:, first:solve))) cycle
+         if (.not. by_edges .and. allocated(consistent)) then
+            call path%set_status(consistent /= path%state%status, consistent)
+            path%state%stuck_slip = consistent_slip
+            fields = consistent_fields
+            found = .true.
+            if (present(held)) found = .not. any(reversed(path, fields, held))
+         end if
          if (.not. by_edges) return
          by_edges = .false.
          first = solve + 1
@@ -229,7 +244,7 @@ contains
          gap_rate = path%model%gap(fields%plus(1.0_wp, rates)) - gap
          ahead = 0.0_wp
          where (next .and. gap_rate < 0.0_wp) ahead = -rates%slip()*gap/gap_rate
-         returns = slipping_back(path, status, rates)
+         returns = slipping_back(path, status, rates) .or. reversed(path, fields, held)
          if (.not. any(returns)) return
          where (returns) wanted = node_stick
          where (status == node_stick .and. slips(wanted) .and. .not. held) wanted = node_stick
@@ -304,19 +319,19 @@ contains
       along = direction*slip > max(significant, path%system%rate_tolerance)*maxval(abs(slip))
    end function slipping_along
 
-   !> Whether a node that was slipping at the start slips against its slip over the increment: it has stuck in between, where no
-   !> front is known to have passed.
-   pure logical function reverses(path, fields, held)
+   !> The nodes that were slipping at the start, and slip against their slip over the increment: they have stuck in between, shape
+   !> (nodes).
+   pure function reversed(path, fields, held)
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(in) :: fields
       logical, intent(in) :: held(:)
-      real(wp), dimension(size(held)) :: slipped
-      real(wp) :: tolerance
+      logical :: reversed(size(held))
+      real(wp) :: slipped(size(held)), tolerance
 
       slipped = fields%slip() - path%state%fields%slip()
       tolerance = max(round_off, path%system%tolerance)*maxval(abs(fields%slip()))
-      reverses = any(-slip_sign(path%state%status)*slipped > tolerance .and. path%state%fields%pressure > 0.0_wp .and. .not. held)
-   end function reverses
+      reversed = -slip_sign(path%state%status)*slipped > tolerance .and. path%state%fields%pressure > 0.0_wp .and. .not. held
+   end function reversed
 
    !> A first guess of the contact: nodes at which the undeformed surfaces overlap at an approach of P/(pi m), m the contact
    !> modulus (exact for a parabola under the force P). `fraction`: fraction of the segment.

@@ -16,7 +16,7 @@ module mfv_chain
    use mfv_node_status
    implicit none
    private
-   public :: chain_type, make_chain, add_samples, find_rates_after, error_at_start
+   public :: chain_type, make_chain, add_samples, find_rates_after, error_at_start, error_of_growth
 
    !> Where contact begins, event stepping resolves the touching of single nodes. The shear tractions next to that point, or next to
    !> the edge of a contact without slip zones, differ by up to this, relative to the largest traction, over the number of nodes in
@@ -51,6 +51,8 @@ module mfv_chain
       !> Estimated errors of the final tractions, and their part where contact begins, force/length^2; of the dissipation, force;
       !> the dissipation, force, and the largest traction, force/length^2.
       real(wp) :: traction_error = 0.0_wp, start_error = 0.0_wp, work_error = 0.0_wp, work = 0.0_wp, traction = 0.0_wp
+      !> Largest difference of the final tractions to those of a coarser chain, force/length^2; 0: there is none.
+      real(wp) :: difference = 0.0_wp
       !> The sum of `friction_work` and its estimated error, force.
       real(wp) :: node_wise = 0.0_wp, node_wise_error = 0.0_wp
       !> The former with half as many increments or samples, force.
@@ -89,7 +91,7 @@ contains
       do i = 1, increments
          status = path%state%status
          if (chain%fronts) held = holding_before(chain, start, i)
-         if (i == 1) call guess_slip(path, interval, reached(chain, i), held)
+         if (i == 1) call guess_slip(path, interval, reached(chain, i), known, held)
          chain%after(i) = path%state%fields
          known = .false.
          if (present(coarser)) call guess_from(path, coarser, start, chain, i, known)
@@ -269,6 +271,7 @@ contains
       associate (left => chain%samples(i - 1), right => chain%samples(i + 1), sample => chain%samples(i))
          sample%fields = mean(left%fields, right%fields)
          call guess_as_before(path, interval, i, ubound(chain%samples, 1), sample%fields, known)
+         if (increment == 1 .and. .not. known) call guess_slip(path, interval, fraction, known, holding_before(chain, start, 1))
          if (.not. known) &
             call path%set_status(spread(.true., 1, size(left%status)), statuses_between(left%status, right%status))
          call find_statuses_on_mesh(path, interval, fraction, sample%fields, found, exceeded, &
@@ -381,7 +384,7 @@ contains
       integer :: i, slipping
       logical :: inside
 
-      error = merge(error_at_start, merge(error_of_growth, 0.0_wp, presses), begins)
+      error = merge(error_at_start, 0.0_wp, begins .or. presses)
       slipping = 0
       inside = .false.
       do i = 1, size(status)
@@ -403,26 +406,29 @@ contains
    !> A first guess of the slipping nodes at a fraction of the interval: they slip in the direction of the tangential load. Under
    !> constant pressures and tangential force control their number is that of Mindlin's contact of cylinders: the edge of the stick
    !> zone is where the pressure is sqrt(Q/(mu P)) of the largest; after a reversal, with half the change in place of Q. Only nodes
-   !> stick that hold from the start (`held`), if these are known.
-   subroutine guess_slip(path, interval, fraction, held)
+   !> stick that hold from the start (`held`), if these are known. `by_pressure`: whether their number follows from the pressures.
+   subroutine guess_slip(path, interval, fraction, by_pressure, held)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
       real(wp), intent(in) :: fraction
+      logical, intent(out) :: by_pressure
       logical, intent(in), optional :: held(:)
       integer, dimension(size(path%state%status)) :: status
       real(wp) :: force, sliding_limit
       logical :: reverses, can_stick(size(path%state%status))
 
+      by_pressure = .false.
       if (.not. abs(interval%load(motion_shift)%rate) > 0.0_wp) return
       status = merge(node_slip_left, node_slip_right, interval%load(motion_shift)%rate > 0.0_wp)
       reverses = any(slips(path%state%status) .and. path%state%status /= status)
       associate (fields => path%state%fields, load => interval%load(motion_shift))
          sliding_limit = path%model%force(path%model%static_friction*fields%pressure)
          if (load%control /= control_force .or. abs(interval%load(motion_approach)%rate) > 0.0_wp .or. &
-             .not. sliding_limit > 0.0_wp .or. path%model%compliance%has_block(block_wt)) then
+             .not. sliding_limit > 0.0_wp) then
             call path%set_status(slips(path%state%status), status)
             return
          end if
+         by_pressure = .true.
          force = load%value + fraction*load%rate
          if (reverses) force = 0.5_wp*(force - fields%force(motion_shift))
          force = max(sign(1.0_wp, load%rate)*force, 0.0_wp)

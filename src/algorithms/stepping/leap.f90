@@ -21,12 +21,13 @@ module mfv_leap
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path
    use mfv_contact_state, only: contact_state_type
+   use mfv_contact_system, only: load_type
    use mfv_error, only: error_type
    use mfv_first_violation, only: apply_by_violations
    use mfv_frictionless, only: apply_directly, before_separation, lacks_support, find_statuses_on_mesh, finish_large_increment, &
                                grow_mesh, subsegment
    use mfv_kinds, only: wp
-   use mfv_motions, only: motion_count, motion_approach, motion_shift
+   use mfv_motions, only: motion_count, motion_approach, motion_shift, control_displacement
    use mfv_node_status
    use mfv_observer, only: observer_type
    use mfv_tolerances, only: rounding, significant, visible
@@ -34,8 +35,8 @@ module mfv_leap
    private
    public :: apply_by_large_increments
 
-   !> An interval shorter than this fraction of a segment is not divided where no statuses are found.
-   real(wp), parameter :: shortest = 0.2_wp
+   !> Where no statuses are found, an interval is divided down to this fraction of its first length, and of what is done before it.
+   real(wp), parameter :: shortest = 0.2_wp, least_growth = 0.05_wp
    !> Most increments of an interval; those of an exact one, for the history: one for a number of nodes in contact whose events cost
    !> more.
    integer, parameter :: most_increments = 64, most_recorded = 8, nodes_a_record = 32
@@ -45,11 +46,23 @@ module mfv_leap
    !> Allowed part of the tolerance for errors of tractions by the path, which can be twice as large as estimated.
    real(wp), parameter :: safety = 0.5_wp
 
-   !> Progress in a segment, as fractions of it: what is done, the goal of large increments, and the length of the next interval.
-   !> `by_violations`: whether that interval is applied by events.
+   !> Contacts of fewer nodes are pressed by events where coupling makes the shear tractions depend on how they grow.
+   integer, parameter :: nodes_to_begin = 150
+   !> Most increments of an interval in which such a contact grows, if its tractions are not accurate.
+   integer, parameter :: most_growing = 8
+   !> Largest part of a segment in which a growing contact may be taken to begin.
+   real(wp), parameter :: most_to_begin = 0.25_wp
+
+   !> Progress in a segment, as fractions of it: what is done, the goal of large increments, the length of the next interval, and
+   !> the longest that was tried for it. `by_violations`: whether that interval is applied by events.
    type :: leap_progress_type
-      real(wp) :: done = 0.0_wp, goal = 0.0_wp, length = 0.0_wp
+      real(wp) :: done = 0.0_wp, goal = 0.0_wp, length = 0.0_wp, longest = 0.0_wp
       logical :: by_violations = .false.
+      !> A contact that has begun in the segment, without friction, at the goal: the largest pressure, force/length^2; the friction
+      !> limit, force. Zero: it has not.
+      real(wp) :: traction = 0.0_wp, sliding_limit = 0.0_wp
+      !> The dissipation of the contact before the segment, force.
+      real(wp) :: dissipation = 0.0_wp
    end type leap_progress_type
 
 contains
@@ -71,7 +84,8 @@ contains
       call path%start_segment(segment, error)
       if (allocated(error)) return
       if (.not. lacks_support(path, segment)) progress%goal = before_separation(segment)
-      progress%length = progress%goal
+      progress%dissipation = path%state%dissipation
+      call set_length(progress, progress%goal)
       do while (progress%done < progress%goal)
          if (progress%by_violations) then
             call continue_by_violations(path, segment, progress, observer, error)
@@ -82,6 +96,26 @@ contains
       end do
       if (progress%goal < 1.0_wp) call apply_by_violations(path, subsegment(segment, progress%goal, 1.0_wp), observer, error)
    end subroutine apply_by_large_increments
+
+   !> Set the length of the next interval, but not beyond the goal.
+   pure subroutine set_length(progress, length)
+      type(leap_progress_type), intent(inout) :: progress
+      real(wp), intent(in) :: length
+      real(wp), parameter :: whole = 0.999_wp
+
+      associate (left => progress%goal - progress%done)
+         progress%length = merge(left, length, length > whole*left)
+      end associate
+      progress%longest = progress%length
+   end subroutine set_length
+
+   !> The interval is done: the next one is twice as long.
+   pure subroutine advance(progress)
+      type(leap_progress_type), intent(inout) :: progress
+
+      progress%done = merge(progress%goal, progress%done + progress%length, progress%length >= progress%goal - progress%done)
+      call set_length(progress, 2.0_wp*progress%length)
+   end subroutine advance
 
    !> Try the next interval. If it is not accurate, it is shortened or applied by events (`progress%by_violations`).
    subroutine try_large_increments(path, segment, progress, observer, error)
@@ -94,42 +128,129 @@ contains
       type(chain_type) :: chain
       logical :: accepted, grown
 
-      associate (done => progress%done, goal => progress%goal, length => progress%length)
-         interval = subsegment(segment, done, done + length)
-         progress%by_violations = begins_on_few_nodes(path, interval)
-         if (progress%by_violations) return
-         call refine(path, interval, chain, accepted)
-         if (accepted .and. path%system%allowed > 0.0_wp) call finish_chain(path, interval, chain, accepted)
-         path%system%allowed = 0.0_wp
-         path%system%allowed_in_rates = 0.0_wp
-         if (chain%exceeded) then
-            call grow_mesh(path, grown)
-            if (grown) return
-         end if
-         if (accepted) then
-            call accept_chain(path, interval, chain)
-            done = merge(goal, done + length, length >= goal - done)
-            length = goal - done
-            call finish_large_increment(path, segment, done, observer, error)
-         else if (.not. chain%found .and. chain%solves < path%state%contact_nodes() .and. length > shortest) then
-            length = 0.5_wp*length
-         else
-            progress%by_violations = .true.
-         end if
-      end associate
+      interval = subsegment(segment, progress%done, progress%done + progress%length)
+      if (begins_on_few_nodes(path, interval, progress)) then
+         call begin_by_violations(path, segment, progress)
+         return
+      end if
+      call refine(path, interval, progress, chain, accepted)
+      if (accepted .and. path%system%allowed > 0.0_wp) call finish_chain(path, interval, chain, accepted)
+      path%system%allowed = 0.0_wp
+      path%system%allowed_in_rates = 0.0_wp
+      if (chain%exceeded) then
+         call grow_mesh(path, grown)
+         if (grown) return
+      end if
+      if (accepted) then
+         call accept_chain(path, interval, progress, chain)
+         call advance(progress)
+         call finish_large_increment(path, segment, progress%done, observer, error)
+      else if (is_coupled(path) .and. .not. any(in_contact(path%state%status))) then
+         call begin_by_violations(path, segment, progress)
+      else if ((shortens(path, progress, chain) .or. .not. chain%found) .and. chain%solves < path%state%contact_nodes() .and. &
+               progress%length > max(shortest*progress%longest, least_growth*progress%done)) then
+         progress%length = 0.5_wp*progress%length
+      else
+         progress%by_violations = .true.
+      end if
    end subroutine try_large_increments
 
-   !> Whether contact begins on so few nodes that large increments with coupling would not be accurate.
-   logical function begins_on_few_nodes(path, interval) result(few)
+   !> Whether the tractions of a chain that presses a contact which has begun in the segment would be accurate with less growth:
+   !> their error where nodes close remains.
+   pure logical function shortens(path, progress, chain)
+      class(contact_path_type), intent(in) :: path
+      type(leap_progress_type), intent(in) :: progress
+      type(chain_type), intent(in) :: chain
+
+      shortens = progress%traction > 0.0_wp .and. chain%increments > 1 .and. &
+                 chain%start_error <= safety*path%model%scene%method%accuracy*reference_traction(path, progress, chain)
+      if (shortens) shortens = relative_traction_error(path, progress, chain) > 1.0_wp
+   end function shortens
+
+   !> Whether the pressures depend on the shear tractions, so that these depend on how the contact grows.
+   pure logical function is_coupled(path)
+      class(contact_path_type), intent(in) :: path
+
+      is_coupled = path%model%compliance%has_block(block_wt)
+   end function is_coupled
+
+   !> Whether contact begins, or has begun in the segment, on so few nodes that large increments with coupling would not be accurate.
+   logical function begins_on_few_nodes(path, interval, progress) result(few)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: interval
+      type(leap_progress_type), intent(in) :: progress
       logical :: contact(size(path%state%status))
 
-      few = path%model%compliance%has_block(block_wt) .and. .not. any(in_contact(path%state%status))
+      few = is_coupled(path)
       if (.not. few) return
-      call first_guess(path, interval, 1.0_wp, contact)
-      few = count(contact) < error_at_start/path%model%scene%method%accuracy
+      if (any(in_contact(path%state%status))) then
+         few = progress%traction > 0.0_wp .and. path%state%contact_nodes() < nodes_to_begin
+      else
+         call first_guess(path, interval, 1.0_wp, contact)
+         few = count(contact) < error_at_start/path%model%scene%method%accuracy
+      end if
    end function begins_on_few_nodes
+
+   !> Have the next interval applied by events: at first up to a contact of about `nodes_to_begin` nodes if large increments may
+   !> then be accurate at the goal, else all of it.
+   subroutine begin_by_violations(path, segment, progress)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      type(leap_progress_type), intent(inout) :: progress
+      real(wp), parameter :: nothing = 1.0e-12_wp, headroom = 3.0_wp
+      integer :: nodes, first
+
+      progress%by_violations = .true.
+      if (progress%traction > 0.0_wp) return
+      call find_goal(path, segment, progress, nodes)
+      if (nodes*path%model%scene%method%accuracy < headroom*error_at_start) return
+      first = guessed(nothing)
+      do while (progress%length > most_to_begin*progress%goal .or. guessed(progress%length) > first + nodes_to_begin)
+         progress%length = 0.5_wp*progress%length
+      end do
+
+   contains
+
+      !> The estimated number of nodes in contact after a part of the segment.
+      integer function guessed(length)
+         real(wp), intent(in) :: length
+         logical :: contact(size(path%state%status))
+
+         call first_guess(path, segment, progress%done + length, contact)
+         guessed = count(contact)
+      end function guessed
+   end subroutine begin_by_violations
+
+   !> The contact at the goal without friction, for `progress`, and its number of `nodes`, 0 if it is not found.
+   subroutine find_goal(path, segment, progress, nodes)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: segment
+      type(leap_progress_type), intent(inout) :: progress
+      integer, intent(out) :: nodes
+      type(segment_type) :: frictionless
+      type(contact_state_type) :: start
+      type(contact_fields_type) :: fields
+      logical :: found, exceeded
+
+      nodes = 0
+      frictionless = segment
+      frictionless%friction = .false.
+      frictionless%load(motion_shift) = load_type(control_displacement, path%state%fields%motion(motion_shift), 0.0_wp)
+      do
+         start = path%state
+         call path%set_status(in_contact(path%state%status), spread(node_frictionless, 1, size(path%state%status)))
+         fields = start%fields
+         call find_statuses_on_mesh(path, frictionless, progress%goal, fields, found, exceeded)
+         if (found) then
+            nodes = path%state%contact_nodes()
+            progress%traction = maxval(fields%pressure)
+            progress%sliding_limit = path%model%force(path%model%static_friction*fields%pressure)
+         end if
+         path%state = start
+         if (exceeded) call grow_mesh(path, exceeded)
+         if (.not. exceeded) return
+      end do
+   end subroutine find_goal
 
    !> Apply the next interval by events.
    subroutine continue_by_violations(path, segment, progress, observer, error)
@@ -139,20 +260,18 @@ contains
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
 
-      associate (done => progress%done, goal => progress%goal, length => progress%length)
-         call apply_by_violations(path, subsegment(segment, done, done + length), observer, error)
-         if (allocated(error)) return
-         progress%by_violations = .false.
-         done = merge(goal, done + length, length >= goal - done)
-         length = goal - done
-      end associate
+      call apply_by_violations(path, subsegment(segment, progress%done, progress%done + progress%length), observer, error)
+      if (allocated(error)) return
+      progress%by_violations = .false.
+      call advance(progress)
    end subroutine continue_by_violations
 
    !> An interval in chains of more and more increments. `accepted`: whether one is accurate with fewer solves than event stepping;
    !> `chain`: that one, or the last. `path` is unchanged.
-   subroutine refine(path, interval, chain, accepted)
+   subroutine refine(path, interval, progress, chain, accepted)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
+      type(leap_progress_type), intent(in) :: progress
       type(chain_type), intent(out) :: chain
       logical, intent(out) :: accepted
       type(sample_type) :: start
@@ -168,28 +287,28 @@ contains
       call make_chain(path, interval, increments, start, chain)
       accepted = accepted .and. chain%found
       if (.not. chain%found) return
-      if (accepted .or. chain%start_error > path%model%scene%method%accuracy &
-          *max(path%certificate%traction_scale, chain%traction)) return
+      if (accepted .or. chain%start_error > path%model%scene%method%accuracy*reference_traction(path, progress, chain)) return
       increments = 2
       do
          call make_chain(path, interval, increments, start, finer, chain)
          if (finer%found) call compare(path, interval, chain, finer)
          chain = finer
          if (.not. chain%found) return
-         call choose(path, chain, accepted, increments)
+         call choose(path, progress, chain, accepted, increments)
          if (chain%fronts .and. .not. (accepted .or. chain%begins)) &
-            call refine_samples(path, interval, start, chain, accepted, increments)
+            call refine_samples(path, interval, progress, start, chain, accepted, increments)
          if (chain%fronts .and. accepted .and. .not. (chain%begins .or. allocated(chain%samples)) .and. shares_work(chain)) &
-            call sample_works(path, interval, start, chain)
+            call sample_works(path, interval, progress, start, chain)
          if (accepted .or. increments == 0) return
       end do
    end subroutine refine
 
    !> If the tractions of a chain are accurate, but not its dissipation, take more and more samples. `accepted`, `increments`: see
    !> choose.
-   subroutine refine_samples(path, interval, start, chain, accepted, increments)
+   subroutine refine_samples(path, interval, progress, start, chain, accepted, increments)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
+      type(leap_progress_type), intent(in) :: progress
       type(sample_type), intent(in) :: start
       type(chain_type), intent(inout) :: chain
       logical, intent(inout) :: accepted
@@ -198,15 +317,15 @@ contains
       integer, parameter :: least_samples = 4
       logical :: found
 
-      if (relative_traction_error(path, chain) > 1.0_wp) return
+      if (relative_traction_error(path, progress, chain) > 1.0_wp) return
       do
          call add_samples(path, interval, start, chain, found)
          if (.not. found) return
          call weigh_samples(path, chain)
-         accepted = relative_work_error(path, chain) <= 1.0_wp .and. &
+         accepted = relative_work_error(path, progress, chain) <= 1.0_wp .and. &
                     (ubound(chain%samples, 1) >= least_samples .or. .not. abs(interval%load(motion_approach)%rate) > 0.0_wp)
          if (accepted .and. shares_work(chain)) &
-            accepted = chain%motion_work_error <= path%model%scene%method%accuracy*reference_work(path, chain)
+            accepted = chain%motion_work_error <= path%model%scene%method%accuracy*reference_work(path, progress, chain)
          if (accepted) return
          if (2*ubound(chain%samples, 1) > most_increments .or. 2*chain%solves > solves_per_change*chain%changes) exit
       end do
@@ -214,9 +333,10 @@ contains
    end subroutine refine_samples
 
    !> Take samples of an accurate chain for the works of the forces, if that makes them accurate.
-   subroutine sample_works(path, interval, start, chain)
+   subroutine sample_works(path, interval, progress, start, chain)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
+      type(leap_progress_type), intent(in) :: progress
       type(sample_type), intent(in) :: start
       type(chain_type), intent(inout) :: chain
       type(chain_type) :: sampled
@@ -225,7 +345,7 @@ contains
 
       sampled = chain
       accepted = .false.
-      call refine_samples(path, interval, start, sampled, accepted, increments)
+      call refine_samples(path, interval, progress, start, sampled, accepted, increments)
       if (accepted) chain = sampled
    end subroutine sample_works
 
@@ -285,7 +405,7 @@ contains
    !> and corrections of slips are used. Without coupling this would save nothing: the preconditioner is exact.
    subroutine allow_errors(path)
       class(contact_path_type), intent(inout) :: path
-      real(wp), parameter :: most = 1.0e-9_wp, in_rates = 1.0e-2_wp, most_in_rates = 1.0e-4_wp
+      real(wp), parameter :: most = 1.0e-9_wp, in_rates = 1.0e-3_wp, most_in_rates = 1.0e-4_wp
 
       if (.not. (path%model%compliance%has_block(block_up) .and. path%model%compliance%has_block(block_wt))) return
       associate (accuracy => path%model%scene%method%accuracy)
@@ -317,58 +437,81 @@ contains
    end subroutine finish_chain
 
    !> Whether a chain meets the tolerance; if not, the number of increments of the next one, 0: too many.
-   subroutine choose(path, chain, accepted, increments)
+   subroutine choose(path, progress, chain, accepted, increments)
       class(contact_path_type), intent(in) :: path
+      type(leap_progress_type), intent(in) :: progress
       type(chain_type), intent(in) :: chain
       logical, intent(out) :: accepted
       integer, intent(out) :: increments
       real(wp) :: by_tractions, by_work, wanted
 
-      by_tractions = relative_traction_error(path, chain)
-      by_work = relative_work_error(path, chain)
+      by_tractions = relative_traction_error(path, progress, chain)
+      by_work = relative_work_error(path, progress, chain)
       accepted = max(by_tractions, by_work) <= 1.0_wp
       increments = 0
       if (accepted) return
       wanted = min(max(2.0_wp, merge(1.0_wp, by_tractions, chain%fronts), by_work**merge(0.25_wp, 0.5_wp, chain%begins)), &
                    real(most_increments, wp))
       increments = chain%increments*2**ceiling(log(wanted)/log(2.0_wp) - 1.0e-6_wp)
+      if (progress%traction > 0.0_wp .and. by_tractions > 1.0_wp .and. increments > most_growing) increments = 0
       if (increments > most_increments .or. &
           (real(chain%solves, wp)*increments)/chain%increments > solves_per_change*chain%changes) increments = 0
    end subroutine choose
 
    !> The estimated error of the tractions of a chain, relative to the allowed one.
-   pure real(wp) function relative_traction_error(path, chain) result(error)
+   pure real(wp) function relative_traction_error(path, progress, chain) result(error)
       class(contact_path_type), intent(in) :: path
+      type(leap_progress_type), intent(in) :: progress
       type(chain_type), intent(in) :: chain
       real(wp) :: traction
 
       error = 0.0_wp
-      traction = max(path%certificate%traction_scale, chain%traction)
+      traction = reference_traction(path, progress, chain)
       if (traction > 0.0_wp) error = ((chain%traction_error - chain%start_error)/safety + chain%start_error) &
                                      /(path%model%scene%method%accuracy*traction)
    end function relative_traction_error
 
-   !> The estimated error of the dissipation of a chain, relative to the allowed one.
-   pure real(wp) function relative_work_error(path, chain) result(error)
+   !> The traction that errors of those of a chain are compared with, force/length^2: the largest so far. If the contact has begun
+   !> in the segment, at least that at its end, which the state that it is left at then is as accurate as.
+   pure real(wp) function reference_traction(path, progress, chain) result(traction)
       class(contact_path_type), intent(in) :: path
+      type(leap_progress_type), intent(in) :: progress
+      type(chain_type), intent(in) :: chain
+
+      traction = max(path%certificate%traction_scale, chain%traction, progress%traction)
+   end function reference_traction
+
+   !> The estimated error of the dissipation of a chain, relative to the allowed one.
+   pure real(wp) function relative_work_error(path, progress, chain) result(error)
+      class(contact_path_type), intent(in) :: path
+      type(leap_progress_type), intent(in) :: progress
       type(chain_type), intent(in) :: chain
 
       error = 0.0_wp
       if (chain%work_error > 0.0_wp) &
-         error = chain%work_error/max(path%model%scene%method%accuracy*reference_work(path, chain), tiny(1.0_wp))
+         error = chain%work_error/max(path%model%scene%method%accuracy*reference_work(path, progress, chain), tiny(1.0_wp))
    end function relative_work_error
 
    !> The work that the error of the dissipation of a chain is compared with, force: the dissipation. If contact begins, that is
    !> often next to nothing: then at least that of a cycle of shear to about 0.8 mu P, as a fraction of (mu P)^2/m, m the contact
-   !> modulus.
-   pure real(wp) function reference_work(path, chain) result(work)
+   !> modulus. In later parts of a segment in which it has begun, the dissipation at the goal, if it grows with the square of the
+   !> load as that of a parabola, but no more than that of such a cycle.
+   pure real(wp) function reference_work(path, progress, chain) result(work)
       class(contact_path_type), intent(in) :: path
+      type(leap_progress_type), intent(in) :: progress
       type(chain_type), intent(in) :: chain
       real(wp), parameter :: fraction = 0.06_wp
+      real(wp) :: cycle_work, share
 
       work = chain%work
-      if (chain%begins) work = max(work, fraction/path%model%compliance%modulus &
-                                   *path%model%force(path%model%static_friction*chain%after(chain%increments)%pressure)**2)
+      cycle_work = fraction/path%model%compliance%modulus
+      if (chain%begins) then
+         work = max(work, cycle_work*path%model%force(path%model%static_friction*chain%after(chain%increments)%pressure)**2)
+      else if (progress%traction > 0.0_wp) then
+         share = (progress%done + progress%length)/progress%goal
+         work = max(work, min(cycle_work*progress%sliding_limit**2, &
+                              (path%state%dissipation - progress%dissipation + chain%work)/share**2))
+      end if
    end function reference_work
 
    !> The start of an interval with the statuses as the loads begin to change, and their rates if there is contact. Without statuses
@@ -474,19 +617,26 @@ contains
       end associate
    end subroutine find_moving
 
-   !> Errors of the finer of two chains of an interval: tractions at first order, dissipation by mfv_chain_dissipation.
+   !> Errors of the finer of two chains of an interval: tractions at the order at which they converge, at most the first, and the
+   !> square root if that is not known; dissipation by mfv_chain_dissipation.
    subroutine compare(path, interval, coarser, finer)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
       type(chain_type), intent(in) :: coarser
       type(chain_type), intent(inout) :: finer
-      real(wp) :: refinement
+      !> Orders of convergence that are taken as such.
+      real(wp), parameter :: least_order = 0.5_wp, most_order = 1.0_wp
+      real(wp) :: order, ratio
 
-      refinement = 1.0_wp/(sqrt(real(finer%increments, wp)/real(coarser%increments, wp)) - 1.0_wp)
+      ratio = real(finer%increments, wp)/real(coarser%increments, wp)
       associate (a => coarser%after(coarser%increments), b => finer%after(finer%increments))
-         finer%traction_error = finer%start_error &
-                                + refinement*max(maxval(abs(a%pressure - b%pressure)), maxval(abs(a%shear - b%shear)))
+         finer%difference = max(maxval(abs(a%pressure - b%pressure)), maxval(abs(a%shear - b%shear)))
       end associate
+      order = least_order
+      if (coarser%difference > finer%difference) order = merge(log(coarser%difference/finer%difference)/log(ratio), most_order, &
+                                                               finer%difference > 0.0_wp)
+      order = min(max(order, least_order), most_order)
+      finer%traction_error = finer%start_error + finer%difference/(ratio**order - 1.0_wp)
       ! As if with half as many increments, at second order.
       finer%coarse_node_wise = finer%node_wise - 3.0_wp*(finer%node_wise - coarser%node_wise) &
                                /((real(finer%increments, wp)/coarser%increments)**2 - 1.0_wp)
@@ -563,9 +713,10 @@ contains
    end function has_shear
 
    !> Accept the increments of a chain. The dissipation of each node is scaled to that of the chain.
-   subroutine accept_chain(path, interval, chain)
+   subroutine accept_chain(path, interval, progress, chain)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
+      type(leap_progress_type), intent(in) :: progress
       type(chain_type), intent(in) :: chain
       real(wp) :: before(motion_count), share
       integer :: i
@@ -586,7 +737,8 @@ contains
          path%work_error = path%work_error + error_of_works(chain, path%work - before)/path%model%scene%method%accuracy
       path%work = before + work_of_motions(path, chain, share*chain%node_wise, path%work - before)
       if (allocated(chain%samples)) call path%recent%keep(interval%load, chain%samples)
-      call path%certificate%note_large_increment(chain%traction_error, chain%work_error, reference_work(path, chain))
+      call path%certificate%note_large_increment(chain%traction_error, reference_traction(path, progress, chain), &
+                                                 chain%work_error, reference_work(path, progress, chain))
    end subroutine accept_chain
 
    !> The work of the forces of all motions, force, from that along `straight` lines between the ends of increments, or from the

@@ -83,11 +83,42 @@ contains
          inner = [findloc(held(first:last), .true., dim=1), findloc(held(first:last), .true., dim=1, back=.true.)] + first - 1
          reach = inner(2) - inner(1)
          if (reach == 0) return
-         if (inner(1) > first .and. first > 1) &
-            call add_parabola(left, first, inner(1) - 1, first - 1, inner(1), inner(1) + min(inner(1) - first + 1, reach - reach/2))
-         if (inner(2) < last .and. last < n) &
-            call add_parabola(right, inner(2) + 1, last, last + 1, inner(2), inner(2) - min(last + 1 - inner(2), reach - reach/2))
+         if (inner(1) > first .and. first > 1) call add_front(left, first, inner(1) - 1, inner(1), first - 1, reach)
+         if (inner(2) < last .and. last < n) call add_front(right, inner(2) + 1, last, inner(2), last + 1, reach)
       end subroutine grown_zone
+
+      !> A front of the nodes `from` to `to`, from the outermost held node `near` to the node `outer` beyond it.
+      subroutine add_front(group, from, to, near, outer, reach)
+         integer, intent(in) :: group, from, to, near, outer, reach
+         integer :: outwards, width
+
+         outwards = sign(1, outer - near)
+         width = 0
+         do while (near + (width + 1)*outwards > 1 .and. near + (width + 1)*outwards < n)
+            if (open (near + (width + 1)*outwards)) exit
+            width = width + 1
+         end do
+         if (abs(outer - near) <= 0.5_wp*width) then
+            call add_power(group, from, to, near + 0.5_wp*outwards, outer)
+         else
+            call add_parabola(group, from, to, outer, near, near - min(abs(outer - near), reach - reach/2)*outwards)
+         end if
+      end subroutine add_front
+
+      !> A front whose slip since the start grows as the power 5/2 of the distance from the `edge` of the held nodes.
+      subroutine add_power(group, from, to, edge, outer)
+         integer, intent(in) :: group, from, to, outer
+         real(wp), intent(in) :: edge
+         real(wp), parameter :: power = 2.5_wp
+         real(wp) :: slip(size(gap))
+         integer :: i
+
+         call add_nodes(group, from, to, outer)
+         slip = start%slip()
+         fronts%weight(from:to) = ([(real(i, wp), i=from, to)] - edge)/(outer - edge)
+         fronts%weight(from:to) = fronts%weight(from:to)**power
+         fronts%base(from:to) = slip(from:to) - fronts%weight(from:to)*slip(outer)
+      end subroutine add_power
 
       !> A front of the nodes `from` to `to`: a parabola through `outer` and the held nodes `near` and `far`.
       subroutine add_parabola(group, from, to, outer, near, far)
