@@ -78,7 +78,7 @@ contains
       type(contact_state_type) :: present_state
       logical, allocatable :: held(:)
       integer, allocatable :: status(:)
-      logical :: known
+      logical :: known, by_pressure
       integer :: i
 
       present_state = path%state
@@ -91,10 +91,11 @@ contains
       do i = 1, increments
          status = path%state%status
          if (chain%fronts) held = holding_before(chain, start, i)
-         if (i == 1) call guess_slip(path, interval, reached(chain, i), known, held)
+         by_pressure = .false.
+         if (i == 1) call guess_slip(path, interval, reached(chain, i), by_pressure, held)
          chain%after(i) = path%state%fields
          known = .false.
-         if (present(coarser)) call guess_from(path, coarser, start, chain, i, known)
+         if (present(coarser) .and. .not. by_pressure) call guess_from(path, coarser, start, chain, i, known)
          if (chain%fronts .and. .not. (chain%begins .or. known)) &
             call guess_as_before(path, interval, i, increments, chain%after(i), known)
          call find_statuses_on_mesh(path, interval, reached(chain, i), chain%after(i), chain%found, chain%exceeded, held)

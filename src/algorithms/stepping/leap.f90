@@ -109,12 +109,15 @@ contains
       progress%longest = progress%length
    end subroutine set_length
 
-   !> The interval is done: the next one is twice as long.
+   !> The interval is done: the next one is twice as long, if this one was not shortened while a contact grows that has begun in the
+   !> segment.
    pure subroutine advance(progress)
       type(leap_progress_type), intent(inout) :: progress
+      real(wp) :: growth
 
+      growth = merge(1.0_wp, 2.0_wp, progress%traction > 0.0_wp .and. progress%length < progress%longest)
       progress%done = merge(progress%goal, progress%done + progress%length, progress%length >= progress%goal - progress%done)
-      call set_length(progress, 2.0_wp*progress%length)
+      call set_length(progress, growth*progress%length)
    end subroutine advance
 
    !> Try the next interval. If it is not accurate, it is shortened or applied by events (`progress%by_violations`).
@@ -454,6 +457,7 @@ contains
                    real(most_increments, wp))
       increments = chain%increments*2**ceiling(log(wanted)/log(2.0_wp) - 1.0e-6_wp)
       if (progress%traction > 0.0_wp .and. by_tractions > 1.0_wp .and. increments > most_growing) increments = 0
+      if (chain%begins .and. by_tractions > most_increments/chain%increments) increments = 0
       if (increments > most_increments .or. &
           (real(chain%solves, wp)*increments)/chain%increments > solves_per_change*chain%changes) increments = 0
    end subroutine choose
