@@ -3,20 +3,23 @@
     PYTHONPATH=python python bench/large_increments.py cycles 100
     PYTHONPATH=python python bench/large_increments.py random 250 1e-3
     PYTHONPATH=python python bench/large_increments.py held-back 40 1e-3
+    PYTHONPATH=python python bench/large_increments.py growing 40 1e-2
     PYTHONPATH=python python bench/large_increments.py nonlinear 24 1e-2
 
 The first prints, for some tolerances, the linear solves and the largest error of what a cycle dissipates. The second compares
 tractions and the dissipation of every load segment in random scenes of Coulomb friction: couplings, materials, disks and a flat
 punch, 101 to 401 nodes, pressing with friction, oblique loads, cycles of either force, unloading, prescribed displacements. It
 prints the scenes above the tolerance, and how often the estimated errors bound the true ones; the third does so for other scenes of
-801 to 1201 nodes, with stepping='auto', for errors above a thousandth of the tolerance. The fourth compares random scenes of Dahl's
-law and of weakening with much shorter increments.
+801 to 1201 nodes, with stepping='auto', for errors above a thousandth of the tolerance. The fourth presses what does not grow in
+proportion to its shape with full coupling: layers, waves that repeat, rounded and conforming punches, profiles. The fifth compares
+random scenes of Dahl's law and of weakening with much shorter increments.
 """
 
 from __future__ import annotations
 
 import math
 import sys
+from collections.abc import Callable
 
 import numpy as np
 
@@ -133,6 +136,43 @@ def random_steps(draw: np.random.Generator, force: float, mu: float, approach: f
     ]
 
 
+def growing_scene(seed: int, solver: Solver) -> Scene:
+    """Scene number `seed` of a contact that does not grow in proportion to its shape, pressed with friction and full coupling."""
+    draw = np.random.default_rng(seed)
+    poisson, mu = float(draw.choice([0.0, 0.2, 0.3, 0.4])), float(10 ** draw.uniform(-1, 0.2))
+    kind, width = int(draw.integers(0, 6)), 1.0
+    lower = Body.half_plane(shear_modulus=1.0, poisson_ratio=poisson)
+    force = float(draw.uniform(0.3, 1)) * 0.5 * math.pi * width**2 / (2 * 50.0) / (1 - poisson)
+    upper, half_width, period = Body.disk(50.0, rigid=True), 1.5 * width, None
+    if kind < 2:
+        layer = mfv.Layer(thickness=float(10 ** draw.uniform(-1, 0.3)), shear_modulus=float(10 ** draw.uniform(-1, 1)), poisson_ratio=0.3)
+        lower = Body.half_plane(shear_modulus=1.0, poisson_ratio=poisson, layers=[layer])
+        force *= min(layer.shear_modulus, 1.0)
+    elif kind == 2:
+        upper, period, half_width = Body.wave(5e-3, 2.0, rigid=True), 2.0, None
+        force = float(draw.uniform(0.2, 0.8)) * math.pi * 5e-3 / (1 - poisson)
+    elif kind == 3:
+        upper = Body.rounded_punch(float(draw.uniform(0.1, 0.6)), 30.0, rigid=True)
+    elif kind == 4:
+        upper = Body.power(0.01, float(draw.uniform(1.6, 4)), shear_modulus=float(10 ** draw.uniform(-0.5, 1)), poisson_ratio=0.1)
+    else:
+        x = np.linspace(-1.5, 1.5, 13)
+        upper = Body.profile(x, 0.01 * x**2 + draw.uniform(0, 3e-4, 13), interpolation="monotone_cubic", rigid=True)
+    shear = float(draw.choice([0.0, draw.uniform(-0.5, 0.5)])) * mu * force
+    steps = [Step(normal_force=force, tangential_force=shear) if shear else Step(normal_force=force)]
+    steps.append(Step(tangential_force=float(draw.uniform(-0.7, 0.7)) * mu * force))
+    return Scene(
+        lower,
+        upper,
+        mesh=Mesh(nodes=int(draw.choice([801, 1001, 1501])), half_width=half_width, period=period),
+        friction=Friction.coulomb(mu),
+        steps=steps,
+        coupling="full",
+        solver=solver,
+        output=Output(history="steps"),
+    )
+
+
 def differences(events: mfv.Result, result: mfv.Result, least: float) -> tuple[float, float]:
     """The largest relative errors of the tractions and of the dissipation of a load segment; where contact begins, of at least `least`."""
     traction = largest = 0.0
@@ -152,23 +192,26 @@ def differences(events: mfv.Result, result: mfv.Result, least: float) -> tuple[f
 def least_dissipation(scene: Scene, events: mfv.Result) -> float:
     """What the error of the dissipation is compared with where contact begins: 0.06 (mu P)^2/m, m the contact modulus."""
     lower, upper = scene.lower, scene.upper
-    flexibility = 1 - lower.poisson_ratio
+    lower = lower.layers[0] if lower.layers else lower
+    flexibility = (1 - lower.poisson_ratio) / lower.shear_modulus
     if upper.shear_modulus is not None:
         flexibility += (1 - upper.poisson_ratio) / upper.shear_modulus
     return float(0.06 * (scene.friction.mu * events.history.normal_force.max()) ** 2 * flexibility)
 
 
-def study_random(seeds: range, tolerance: float, stepping: str, least: tuple[float, float]) -> None:
+def study_random(
+    scene: Callable[[int, Solver], Scene], seeds: range, tolerance: float, stepping: str, least: tuple[float, float]
+) -> None:
     rows, solves, beyond = [], np.zeros(2, int), 0
     for seed in seeds:
-        events = random_scene(seed, Solver(stepping="event")).run()
-        result = random_scene(seed, Solver(stepping=stepping, accuracy=tolerance)).run()
+        events = scene(seed, Solver(stepping="event")).run()
+        result = scene(seed, Solver(stepping=stepping, accuracy=tolerance)).run()
         if events.outcome != result.outcome:
             print(f"scene {seed}: {events.outcome} by events, {result.outcome} by large increments")
         if "complete" not in (events.outcome, result.outcome) or events.outcome != result.outcome:
             continue
         solves += [events.summary.linear_solves, result.summary.linear_solves]
-        traction, dissipation = differences(events, result, least_dissipation(random_scene(seed, Solver()), events))
+        traction, dissipation = differences(events, result, least_dissipation(scene(seed, Solver()), events))
         names = ("increment_traction_error", "increment_dissipation_error")
         estimates = tuple(float(result.summary[name]) if name in result.summary else 0.0 for name in names)
         rows.append((traction, estimates[0], dissipation, estimates[1]))
@@ -238,6 +281,9 @@ if __name__ == "__main__":
         study_nonlinear(int(sys.argv[2]), float(sys.argv[3]))
     elif sys.argv[1] == "held-back":
         seeds, accuracy = range(HELD_BACK, HELD_BACK + int(sys.argv[2])), float(sys.argv[3])
-        study_random(seeds, accuracy, "auto", (1e-3 * accuracy, 1e-3 * accuracy))
+        study_random(random_scene, seeds, accuracy, "auto", (1e-3 * accuracy, 1e-3 * accuracy))
+    elif sys.argv[1] == "growing":
+        seeds, accuracy = range(int(sys.argv[2])), float(sys.argv[3])
+        study_random(growing_scene, seeds, accuracy, "leap", (1e-3 * accuracy, 1e-3 * accuracy))
     else:
-        study_random(range(int(sys.argv[2])), float(sys.argv[3]), "leap", (ROUND_OFF_TRACTION, ROUND_OFF_DISSIPATION))
+        study_random(random_scene, range(int(sys.argv[2])), float(sys.argv[3]), "leap", (ROUND_OFF_TRACTION, ROUND_OFF_DISSIPATION))

@@ -12,6 +12,7 @@
 module mfv_active_set
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path, only: contact_path_type, segment_type
+   use mfv_contact_state, only: contact_state_type
    use mfv_contact_system
    use mfv_inequalities, only: inequalities, is_required, slack, status_after
    use mfv_kinds, only: pi, wp
@@ -30,6 +31,9 @@ module mfv_active_set
    !> Relative error of tractions that intermediate solutions may have, until only a `few` nodes change.
    real(wp), parameter :: intermediate = 1.0e-5_wp
    integer, parameter :: few = 2
+   !> Most nodes at fronts by which the statuses that the rates require may differ from those that the state does: where the slip at
+   !> a front is only nearly as assumed, these alternate.
+   integer, parameter :: at_fronts = 4
    !> Most corrections of the slip that is expected of open nodes.
    integer, parameter :: most_looks = 3
 
@@ -40,7 +44,7 @@ contains
    !> (mfv_sticking_front), shape (nodes); if absent, all nodes that stick hold at the slip of the start or of first contact.
    !> `found`: whether there are any. `path` then has the statuses, and in stuck_slip the slip from which that of the increment
    !> counts; its fields remain those of the start. If not found, the statuses are invalid: the system is singular, the statuses
-   !> cycle, nothing balances a prescribed force, or every node slips.
+   !> cycle (but for a few nodes at fronts), nothing balances a prescribed force, or every node slips.
    subroutine find_statuses(path, segment, done, fields, found, held)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -53,10 +57,8 @@ contains
       integer :: tried(size(path%state%status), most_solves)
       real(wp), dimension(size(path%state%status)) :: hold, ahead, before
       real(wp) :: allowed
-      integer, allocatable :: consistent(:)
-      type(contact_fields_type) :: consistent_fields
-      real(wp), allocatable :: consistent_slip(:)
-      logical :: possible, by_edges, rough
+      type(contact_state_type) :: consistent
+      logical :: possible, by_edges, rough, is_consistent
       integer :: solve, first, looks
 
       found = .false.
@@ -79,12 +81,8 @@ contains
          path%system%allowed = allowed
          if (.not. possible) return
          call find_wanted(path, segment, fields, wanted, held)
-         if (all(wanted == path%state%status) .and. .not. rough) then
-            consistent = wanted
-            consistent_fields = fields
-            consistent_slip = path%state%stuck_slip
-         end if
          found = all(wanted == path%state%status)
+         is_consistent = found
          if (rough .and. count(wanted /= path%state%status) <= few) then
             rough = .false.
             first = solve + 1
@@ -103,14 +101,16 @@ contains
             end if
             if (present(held)) then
                call find_slipping_on(path, segment, fields, held, wanted)
-               found = .not. any(reversed(path, fields, held))
+               found = .not. reverses(path, fields, held)
             end if
             if (all(wanted == path%state%status)) return
             found = .false.
          end if
+         if (present(held) .and. .not. rough .and. is_consistent .and. &
+             count(wanted /= path%state%status) <= at_fronts) call keep(path, fields, consistent)
          if (by_edges) call move_edges(path%state%status, wanted, held)
          if (found .and. is_among(wanted, tried(:, :solve))) then
-            found = .not. any(reversed(path, fields, held))
+            found = .not. reverses(path, fields, held)
             return
          end if
          found = .false.
@@ -118,12 +118,11 @@ contains
          call path%set_status(wanted /= path%state%status, wanted)
          path%state%stuck_slip = hold
          if (.not. is_among(wanted, tried(:, first:solve))) cycle
-         if (.not. by_edges .and. allocated(consistent)) then
-            call path%set_status(consistent /= path%state%status, consistent)
-            path%state%stuck_slip = consistent_slip
-            fields = consistent_fields
-            found = .true.
-            if (present(held)) found = .not. any(reversed(path, fields, held))
+         if (.not. by_edges .and. allocated(consistent%status)) then
+            call path%set_status(consistent%status /= path%state%status, consistent%status)
+            path%state%stuck_slip = consistent%stuck_slip
+            fields = consistent%fields
+            found = .not. reverses(path, fields, held)
          end if
          if (.not. by_edges) return
          by_edges = .false.
@@ -131,6 +130,17 @@ contains
       end do
       found = .false.
    end subroutine find_statuses
+
+   !> Keep the statuses of a state, its `fields` and the slip at which its nodes hold.
+   subroutine keep(path, fields, kept)
+      class(contact_path_type), intent(in) :: path
+      type(contact_fields_type), intent(in) :: fields
+      type(contact_state_type), intent(inout) :: kept
+
+      kept%status = path%state%status
+      kept%stuck_slip = path%state%stuck_slip
+      kept%fields = fields
+   end subroutine keep
 
    !> Solve for the fields at the end of an increment, which contain a first guess. `hold`: the slip at which nodes hold, length,
    !> shape (nodes); that of nodes at which an edge has passed follows from the solution, if `held` is present (see find_statuses).
@@ -244,7 +254,7 @@ contains
          gap_rate = path%model%gap(fields%plus(1.0_wp, rates)) - gap
          ahead = 0.0_wp
          where (next .and. gap_rate < 0.0_wp) ahead = -rates%slip()*gap/gap_rate
-         returns = slipping_back(path, status, rates) .or. reversed(path, fields, held)
+         returns = slipping_back(path, status, rates)
          if (.not. any(returns)) return
          where (returns) wanted = node_stick
          where (status == node_stick .and. slips(wanted) .and. .not. held) wanted = node_stick
@@ -319,19 +329,19 @@ contains
       along = direction*slip > max(significant, path%system%rate_tolerance)*maxval(abs(slip))
    end function slipping_along
 
-   !> The nodes that were slipping at the start, and slip against their slip over the increment: they have stuck in between, shape
-   !> (nodes).
-   pure function reversed(path, fields, held)
+   !> Whether a node that was slipping at the start slips against its slip over the increment: it has stuck in between, where no
+   !> front is known to have passed.
+   pure logical function reverses(path, fields, held)
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(in) :: fields
       logical, intent(in) :: held(:)
-      logical :: reversed(size(held))
-      real(wp) :: slipped(size(held)), tolerance
+      real(wp), dimension(size(held)) :: slipped
+      real(wp) :: tolerance
 
       slipped = fields%slip() - path%state%fields%slip()
       tolerance = max(round_off, path%system%tolerance)*maxval(abs(fields%slip()))
-      reversed = -slip_sign(path%state%status)*slipped > tolerance .and. path%state%fields%pressure > 0.0_wp .and. .not. held
-   end function reversed
+      reverses = any(-slip_sign(path%state%status)*slipped > tolerance .and. path%state%fields%pressure > 0.0_wp .and. .not. held)
+   end function reverses
 
    !> A first guess of the contact: nodes at which the undeformed surfaces overlap at an approach of P/(pi m), m the contact
    !> modulus (exact for a parabola under the force P). `fraction`: fraction of the segment.

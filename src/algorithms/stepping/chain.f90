@@ -29,6 +29,8 @@ module mfv_chain
    !> outermost node may have closed and stuck or not (up to 1.5 with 80 to 400 nodes). Under a constant one, contact grows where it
    !> slips.
    real(wp), parameter :: error_of_growth = 1.5_wp
+   !> A stuck node at an edge with this part of the limiting shear may slip on another path to the same load.
+   real(wp), parameter :: close = 0.8_wp
 
    type :: chain_type
       integer :: increments = 0
@@ -272,7 +274,9 @@ contains
       associate (left => chain%samples(i - 1), right => chain%samples(i + 1), sample => chain%samples(i))
          sample%fields = mean(left%fields, right%fields)
          call guess_as_before(path, interval, i, ubound(chain%samples, 1), sample%fields, known)
-         if (increment == 1 .and. .not. known) call guess_slip(path, interval, fraction, known, holding_before(chain, start, 1))
+         ! Between the ends of the interval, which may be far apart.
+         if (ubound(chain%samples, 1) == 2 .and. chain%increments == 1 .and. .not. known) &
+            call guess_slip(path, interval, fraction, known, holding_before(chain, start, 1))
          if (.not. known) &
             call path%set_status(spread(.true., 1, size(left%status)), statuses_between(left%status, right%status))
          call find_statuses_on_mesh(path, interval, fraction, sample%fields, found, exceeded, &
@@ -369,21 +373,23 @@ contains
 
       grown = any(in_contact(path%state%status) .and. .not. in_contact(before))
       if (.not. (grown .or. chain%sticks_anew)) return
-      chain%start_error = error_of_edge(path%state%status, chain%begins, &
-                                        grown .and. abs(interval%load(motion_approach)%rate) > 0.0_wp, &
-                                        path%model%scene%friction%static%largest())*chain%traction
+      associate (fields => chain%after(chain%increments), limit => path%model%static_friction)
+         chain%start_error = error_of_edge(path%state%status, abs(fields%shear) > close*limit*fields%pressure, chain%begins, &
+                                           grown .and. abs(interval%load(motion_approach)%rate) > 0.0_wp, &
+                                           path%model%scene%friction%static%largest())*chain%traction
+      end associate
    end subroutine find_start_error
 
    !> Error of the tractions of a contact that has begun (`begins`) or grown in the interval, relative to the largest, by the
    !> `status` of its nodes: see error_at_start and error_of_growth. An error at the edge of a contact without slip zones is
-   !> compared with the friction limit, since it changes the slip zones of later steps. `presses`: whether the normal load changes;
-   !> `friction`: the coefficient.
-   pure real(wp) function error_of_edge(status, begins, presses, friction) result(error)
+   !> compared with the friction limit, since it changes the slip zones of later steps. `at_limit`: whether a node nearly slips, shape
+   !> (nodes); `presses`: whether the normal load changes; `friction`: the coefficient.
+   pure real(wp) function error_of_edge(status, at_limit, begins, presses, friction) result(error)
       integer, intent(in) :: status(:)
-      logical, intent(in) :: begins, presses
+      logical, intent(in) :: at_limit(:), begins, presses
       real(wp), intent(in) :: friction
       integer :: i, slipping
-      logical :: inside
+      logical :: inside, unresolved
 
       error = merge(error_at_start, 0.0_wp, begins .or. presses)
       slipping = 0
@@ -394,9 +400,11 @@ contains
             cycle
          end if
          if ((status(i) == node_open .and. inside) .or. (status(i) == node_stick .and. .not. inside)) then
-            if (slipping < resolved .and. .not. begins) error = error_of_growth
+            if (slipping < resolved .and. .not. begins) error = max(error, error_of_growth)
             if (slipping == 0 .and. begins) error = max(error, error_at_start/min(friction, 1.0_wp))
-            if (slipping > 0 .and. slipping < resolved .and. begins) error = max(error, error_unresolved)
+            unresolved = slipping > 0 .and. slipping < resolved .and. (begins .or. presses)
+            if (slipping == 0 .and. presses .and. .not. begins) unresolved = at_limit(merge(i - 1, i, status(i) == node_open))
+            if (unresolved) error = max(error, error_unresolved)
          end if
          inside = status(i) == node_stick
          slipping = 0

@@ -10,6 +10,10 @@
 !> that touches during an increment holds at an estimate of its slip at first contact, and a node that slips and sticks again within
 !> an increment is treated as stuck. Dissipation: see mfv_chain_dissipation.
 !>
+!> With full coupling the shear tractions depend on how the contact has grown. If it begins and one chain is not accurate (it is, if
+!> the contact grows in proportion to its shape), it begins by events, on few nodes; then intervals double the load or, where that is
+!> not accurate, less. Their errors are compared with tractions and dissipation at the end of the segment.
+!>
 !> An interval that would take more solves than it has events is applied by events (mfv_first_violation), which are exact; gross
 !> sliding and separation are therefore found there. The certificate checks large increments at their ends only.
 module mfv_leap
@@ -46,7 +50,7 @@ module mfv_leap
    !> Allowed part of the tolerance for errors of tractions by the path, which can be twice as large as estimated.
    real(wp), parameter :: safety = 0.5_wp
 
-   !> Contacts of fewer nodes are pressed by events where coupling makes the shear tractions depend on how they grow.
+   !> Contacts that have begun in the segment are pressed by events up to this number of nodes.
    integer, parameter :: nodes_to_begin = 150
    !> Most increments of an interval in which such a contact grows, if its tractions are not accurate.
    integer, parameter :: most_growing = 8
@@ -150,6 +154,9 @@ contains
          call finish_large_increment(path, segment, progress%done, observer, error)
       else if (is_coupled(path) .and. .not. any(in_contact(path%state%status))) then
          call begin_by_violations(path, segment, progress)
+      else if (chain%found .and. .not. is_worth_it(progress, chain)) then
+         progress%length = progress%longest
+         progress%by_violations = .true.
       else if ((shortens(path, progress, chain) .or. .not. chain%found) .and. chain%solves < path%state%contact_nodes() .and. &
                progress%length > max(shortest*progress%longest, least_growth*progress%done)) then
          progress%length = 0.5_wp*progress%length
@@ -169,6 +176,15 @@ contains
                  chain%start_error <= safety*path%model%scene%method%accuracy*reference_traction(path, progress, chain)
       if (shortens) shortens = relative_traction_error(path, progress, chain) > 1.0_wp
    end function shortens
+
+   !> Whether a chain of more increments would take fewer solves than events. Not asked of contacts that have not begun in the
+   !> segment.
+   pure logical function is_worth_it(progress, chain)
+      type(leap_progress_type), intent(in) :: progress
+      type(chain_type), intent(in) :: chain
+
+      is_worth_it = .not. progress%traction > 0.0_wp .or. 2*chain%solves < solves_per_change*chain%changes
+   end function is_worth_it
 
    !> Whether the pressures depend on the shear tractions, so that these depend on how the contact grows.
    pure logical function is_coupled(path)
@@ -224,7 +240,7 @@ contains
       end function guessed
    end subroutine begin_by_violations
 
-   !> The contact at the goal without friction, for `progress`, and its number of `nodes`, 0 if it is not found.
+   !> The contact at the goal without friction: its tractions, for `progress`, and its number of `nodes`, 0 if it is not found.
    subroutine find_goal(path, segment, progress, nodes)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -291,6 +307,7 @@ contains
       accepted = accepted .and. chain%found
       if (.not. chain%found) return
       if (accepted .or. chain%start_error > path%model%scene%method%accuracy*reference_traction(path, progress, chain)) return
+      if (.not. is_worth_it(progress, chain)) return
       increments = 2
       do
          call make_chain(path, interval, increments, start, finer, chain)
@@ -498,13 +515,13 @@ contains
 
    !> The work that the error of the dissipation of a chain is compared with, force: the dissipation. If contact begins, that is
    !> often next to nothing: then at least that of a cycle of shear to about 0.8 mu P, as a fraction of (mu P)^2/m, m the contact
-   !> modulus. In later parts of a segment in which it has begun, the dissipation at the goal, if it grows with the square of the
-   !> load as that of a parabola, but no more than that of such a cycle.
+   !> modulus. In later parts of a segment in which it has begun, at least a `part` of the dissipation at the goal, if it grows with the
+   !> square of the load as that of a parabola, but no more than that of such a cycle.
    pure real(wp) function reference_work(path, progress, chain) result(work)
       class(contact_path_type), intent(in) :: path
       type(leap_progress_type), intent(in) :: progress
       type(chain_type), intent(in) :: chain
-      real(wp), parameter :: fraction = 0.06_wp
+      real(wp), parameter :: fraction = 0.06_wp, part = 0.25_wp
       real(wp) :: cycle_work, share
 
       work = chain%work
@@ -513,8 +530,8 @@ contains
          work = max(work, cycle_work*path%model%force(path%model%static_friction*chain%after(chain%increments)%pressure)**2)
       else if (progress%traction > 0.0_wp) then
          share = (progress%done + progress%length)/progress%goal
-         work = max(work, min(cycle_work*progress%sliding_limit**2, &
-                              (path%state%dissipation - progress%dissipation + chain%work)/share**2))
+         work = max(work, part*min(cycle_work*progress%sliding_limit**2, &
+                                   (path%state%dissipation - progress%dissipation + chain%work)/share**2))
       end if
    end function reference_work
 

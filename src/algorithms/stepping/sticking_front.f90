@@ -1,11 +1,13 @@
 !> The slip at which nodes hold that have stuck within a large increment.
 !>
-!> While a stick zone grows, each of its new nodes holds at the slip S(x) that it had when the edge of the zone passed. Between the
-!> nodes that have held from the start of the increment and the first node E beyond the zone, S is smooth, and next to the edge c
-!> the slip differs from S by (x - c)^(5/2) only, so that S(E) is about the slip of E at the end. S is taken as the parabola through
-!> E and two nodes that have held: the outermost one, and one as far further in as E is further out. A contact that begins within
-!> the increment grows in proportion to its shape (exactly so for a power of x, under loads that grow in proportion): there S
-!> follows the gap before the increment.
+!> While a stick zone grows, each of its new nodes holds at the slip S(x) that it had when the edge of the zone passed. E is the first
+!> node beyond the zone; next to the edge c the slip differs from S by (x - c)^(5/2) only, so that S(E) is about the slip of E at the
+!> end. Near the edge c0 at the start, the slip since the start is the integral of (x - c)^(3/2) over the way of c: S - s0 grows as
+!> (x - c0)^(5/2), s0 the slip at the start, even if the edge rests before it moves (then with a part in (x - c0)^(3/2)). So it is
+!> taken where the zone grows within the nearer half of what slipped at the start. Beyond that S is the parabola through E and two
+!> nodes that have held: the outermost one, and one as far further in as E is further out. A contact that begins within the
+!> increment grows in proportion to its shape (exactly so for a power of x, under loads that grow in proportion): there S follows the
+!> gap before the increment.
 !>
 !> S depends on the slip of E, an unknown of the same increment: slip(E) = s + sum of r theta over the slips theta that are assumed
 !> for the outer nodes, r the responses to unit slips. The fronts to the left and to the right of all stick zones are two groups,
@@ -87,9 +89,12 @@ contains
          if (inner(2) < last .and. last < n) call add_front(right, inner(2) + 1, last, inner(2), last + 1, reach)
       end subroutine grown_zone
 
-      !> A front of the nodes `from` to `to`, from the outermost held node `near` to the node `outer` beyond it.
+      !> A front of the nodes `from` to `to`, between the outermost held node `near` and the node `outer` beyond the zone. `reach`:
+      !> from the first to the last held node.
       subroutine add_front(group, from, to, near, outer, reach)
          integer, intent(in) :: group, from, to, near, outer, reach
+         !> The part of the slip zone, its `width` in nodes, that counts as near the edge.
+         real(wp), parameter :: near_edge = 0.5_wp
          integer :: outwards, width
 
          outwards = sign(1, outer - near)
@@ -98,7 +103,7 @@ contains
             if (open (near + (width + 1)*outwards)) exit
             width = width + 1
          end do
-         if (abs(outer - near) <= 0.5_wp*width) then
+         if (abs(outer - near) <= near_edge*width) then
             call add_power(group, from, to, near + 0.5_wp*outwards, outer)
          else
             call add_parabola(group, from, to, outer, near, near - min(abs(outer - near), reach - reach/2)*outwards)
