@@ -39,7 +39,8 @@ module mfv_leap
    private
    public :: apply_by_large_increments
 
-   !> Where no statuses are found, an interval is divided down to this fraction of its first length, and of what is done before it.
+   !> An interval shorter than this fraction of a segment is not divided. Where a contact grows that has begun in the segment: of the
+   !> first length of the interval; and shorter than `least_growth` of what is done before it.
    real(wp), parameter :: shortest = 0.2_wp, least_growth = 0.05_wp
    !> Most increments of an interval; those of an exact one, for the history: one for a number of nodes in contact whose events cost
    !> more.
@@ -113,16 +114,25 @@ contains
       progress%longest = progress%length
    end subroutine set_length
 
-   !> The interval is done: the next one is twice as long, if this one was not shortened while a contact grows that has begun in the
-   !> segment.
+   !> The interval is done: the next one is the rest. While a contact grows that has begun in the segment it is twice as long, or as
+   !> long if this one was shortened.
    pure subroutine advance(progress)
       type(leap_progress_type), intent(inout) :: progress
-      real(wp) :: growth
+      real(wp) :: length
 
-      growth = merge(1.0_wp, 2.0_wp, progress%traction > 0.0_wp .and. progress%length < progress%longest)
+      length = merge(progress%length, 2.0_wp*progress%length, progress%length < progress%longest)
+      if (.not. progress%traction > 0.0_wp) length = progress%goal
       progress%done = merge(progress%goal, progress%done + progress%length, progress%length >= progress%goal - progress%done)
-      call set_length(progress, growth*progress%length)
+      call set_length(progress, length)
    end subroutine advance
+
+   !> The length of intervals that are not divided.
+   pure real(wp) function shortest_length(progress) result(length)
+      type(leap_progress_type), intent(in) :: progress
+
+      length = shortest
+      if (progress%traction > 0.0_wp) length = max(shortest*progress%longest, least_growth*progress%done)
+   end function shortest_length
 
    !> Try the next interval. If it is not accurate, it is shortened or applied by events (`progress%by_violations`).
    subroutine try_large_increments(path, segment, progress, observer, error)
@@ -158,7 +168,7 @@ contains
          progress%length = progress%longest
          progress%by_violations = .true.
       else if ((shortens(path, progress, chain) .or. .not. chain%found) .and. chain%solves < path%state%contact_nodes() .and. &
-               progress%length > max(shortest*progress%longest, least_growth*progress%done)) then
+               progress%length > shortest_length(progress)) then
          progress%length = 0.5_wp*progress%length
       else
          progress%by_violations = .true.
