@@ -145,7 +145,9 @@ def growing_scene(seed: int, solver: Solver) -> Scene:
     force = float(draw.uniform(0.3, 1)) * 0.5 * math.pi * width**2 / (2 * 50.0) / (1 - poisson)
     upper, half_width, period = Body.disk(50.0, rigid=True), 1.5 * width, None
     if kind < 2:
-        layer = mfv.Layer(thickness=float(10 ** draw.uniform(-1, 0.3)), shear_modulus=float(10 ** draw.uniform(-1, 1)), poisson_ratio=0.3)
+        layer = mfv.Layer(
+            thickness=float(10 ** draw.uniform(-1, 0.3)), shear_modulus=float(10 ** draw.uniform(-1, 1)), poisson_ratio=0.3
+        )
         lower = Body.half_plane(shear_modulus=1.0, poisson_ratio=poisson, layers=[layer])
         force *= min(layer.shear_modulus, 1.0)
     elif kind == 2:

@@ -307,7 +307,7 @@ contains
       type(chain_type) :: finer
       integer :: increments
 
-      call allow_errors(path)
+      call allow_errors(path, progress)
       if (may_depend_on_path(path, interval)) call find_start(path, interval, start)
       call find_stiffness(path, interval, start)
       accepted = is_exact(path, interval)
@@ -432,15 +432,17 @@ contains
    end subroutine prefer_node_wise
 
    !> Allow errors of iterative solvers that are negligible beside that of a chain and in the certificate: of the rates, only signs
-   !> and corrections of slips are used. Without coupling this would save nothing: the preconditioner is exact.
-   subroutine allow_errors(path)
+   !> and corrections of slips are used, and smaller ones where a contact grows that has begun in the segment, whose fronts may rest.
+   !> Without coupling this would save nothing: the preconditioner is exact.
+   subroutine allow_errors(path, progress)
       class(contact_path_type), intent(inout) :: path
-      real(wp), parameter :: most = 1.0e-9_wp, in_rates = 1.0e-3_wp, most_in_rates = 1.0e-4_wp
+      type(leap_progress_type), intent(in) :: progress
+      real(wp), parameter :: most = 1.0e-9_wp, in_rates = 1.0e-2_wp, at_fronts = 3.0e-3_wp, most_in_rates = 1.0e-4_wp
 
       if (.not. (path%model%compliance%has_block(block_up) .and. path%model%compliance%has_block(block_wt))) return
       associate (accuracy => path%model%scene%method%accuracy)
          path%system%allowed = min(visible*accuracy, most)
-         path%system%allowed_in_rates = min(in_rates*accuracy, most_in_rates)
+         path%system%allowed_in_rates = min(merge(at_fronts, in_rates, progress%traction > 0.0_wp)*accuracy, most_in_rates)
       end associate
    end subroutine allow_errors
 

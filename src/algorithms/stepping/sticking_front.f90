@@ -4,7 +4,7 @@
 !> node beyond the zone; next to the edge c the slip differs from S by (x - c)^(5/2) only, so that S(E) is about the slip of E at the
 !> end. Near the edge c0 at the start, the slip since the start is the integral of (x - c)^(3/2) over the way of c: S - s0 grows as
 !> (x - c0)^(5/2), s0 the slip at the start, even if the edge rests before it moves (then with a part in (x - c0)^(3/2)). So it is
-!> taken where the zone grows within the nearer half of what slipped at the start. Beyond that S is the parabola through E and two
+!> taken where the zone grows within the nearer part of what slipped at the start. Beyond that S is the parabola through E and two
 !> nodes that have held: the outermost one, and one as far further in as E is further out. A contact that begins within the
 !> increment grows in proportion to its shape (exactly so for a power of x, under loads that grow in proportion): there S follows the
 !> gap before the increment.
@@ -90,11 +90,14 @@ contains
       end subroutine grown_zone
 
       !> A front of the nodes `from` to `to`, between the outermost held node `near` and the node `outer` beyond the zone. `reach`:
-      !> from the first to the last held node.
+      !> from the first to the last held node. Near the edge the slip since the start is a power of the distance, further away S is a
+      !> parabola; in between it is a mean of both, so that statuses do not alternate.
       subroutine add_front(group, from, to, near, outer, reach)
          integer, intent(in) :: group, from, to, near, outer, reach
-         !> The part of the slip zone, its `width` in nodes, that counts as near the edge.
-         real(wp), parameter :: near_edge = 0.5_wp
+         !> The parts of the slip zone up to which a zone grows by the power, and from which by the parabola.
+         real(wp), parameter :: near_edge = 0.25_wp, far = 0.75_wp
+         real(wp), dimension(from:to) :: base, weight, by_power
+         real(wp) :: power, slip(size(gap))
          integer :: outwards, width
 
          outwards = sign(1, outer - near)
@@ -103,42 +106,41 @@ contains
             if (open (near + (width + 1)*outwards)) exit
             width = width + 1
          end do
-         if (abs(outer - near) <= near_edge*width) then
-            call add_power(group, from, to, near + 0.5_wp*outwards, outer)
-         else
-            call add_parabola(group, from, to, outer, near, near - min(abs(outer - near), reach - reach/2)*outwards)
-         end if
+         power = min(max((far*width - abs(outer - near))/((far - near_edge)*max(width, 1)), 0.0_wp), 1.0_wp)
+         slip = start%slip()
+         call find_parabola(from, to, outer, near, near - min(abs(outer - near), reach - reach/2)*outwards, base, weight)
+         by_power = powers(from, to, near + 0.5_wp*outwards, outer)
+         call add_nodes(group, from, to, outer)
+         fronts%weight(from:to) = (1.0_wp - power)*weight + power*by_power
+         fronts%base(from:to) = (1.0_wp - power)*base + power*(slip(from:to) - by_power*slip(outer))
       end subroutine add_front
 
-      !> A front whose slip since the start grows as the power 5/2 of the distance from the `edge` of the held nodes.
-      subroutine add_power(group, from, to, edge, outer)
-         integer, intent(in) :: group, from, to, outer
+      !> The power 5/2 of the distances of the nodes `from` to `to` from the `edge` of the held nodes, over that of `outer`.
+      pure function powers(from, to, edge, outer)
+         integer, intent(in) :: from, to, outer
          real(wp), intent(in) :: edge
-         real(wp), parameter :: power = 2.5_wp
-         real(wp) :: slip(size(gap))
+         real(wp) :: powers(from:to)
          integer :: i
 
-         call add_nodes(group, from, to, outer)
-         slip = start%slip()
-         fronts%weight(from:to) = ([(real(i, wp), i=from, to)] - edge)/(outer - edge)
-         fronts%weight(from:to) = fronts%weight(from:to)**power
-         fronts%base(from:to) = slip(from:to) - fronts%weight(from:to)*slip(outer)
-      end subroutine add_power
+         powers = [((real(i, wp) - edge)/(outer - edge), i=from, to)]
+         powers = powers**2*sqrt(powers)
+      end function powers
 
-      !> A front of the nodes `from` to `to`: a parabola through `outer` and the held nodes `near` and `far`.
-      subroutine add_parabola(group, from, to, outer, near, far)
-         integer, intent(in) :: group, from, to, outer, near, far
+      !> The slip base + weight*slip(outer) of the nodes `from` to `to` by the parabola through `outer` and the held nodes `near` and
+      !> `far`.
+      pure subroutine find_parabola(from, to, outer, near, far, base, weight)
+         integer, intent(in) :: from, to, outer, near, far
+         real(wp), intent(out) :: base(from:to), weight(from:to)
          real(wp) :: x
          integer :: i
 
-         call add_nodes(group, from, to, outer)
          do i = from, to
             x = real(i, wp)
-            fronts%weight(i) = (x - near)*(x - far)/real((outer - near)*(outer - far), wp)
-            fronts%base(i) = hold(near)*(x - outer)*(x - far)/real((near - outer)*(near - far), wp) &
-                             + hold(far)*(x - outer)*(x - near)/real((far - outer)*(far - near), wp)
+            weight(i) = (x - near)*(x - far)/real((outer - near)*(outer - far), wp)
+            base(i) = hold(near)*(x - outer)*(x - far)/real((near - outer)*(near - far), wp) &
+                      + hold(far)*(x - outer)*(x - near)/real((far - outer)*(far - near), wp)
          end do
-      end subroutine add_parabola
+      end subroutine find_parabola
 
       !> A front of the nodes `from` to `to`, and the node beyond it.
       subroutine add_nodes(group, from, to, outer)
