@@ -16,7 +16,7 @@ module mfv_chain
    use mfv_node_status
    implicit none
    private
-   public :: chain_type, make_chain, add_samples, find_rates_after, error_at_start, error_of_growth
+   public :: chain_type, make_chain, add_samples, find_rates_after, error_at_start
 
    !> Where contact begins, event stepping resolves the touching of single nodes. The shear tractions next to that point, or next to
    !> the edge of a contact without slip zones, differ by up to this, relative to the largest traction, over the number of nodes in
@@ -25,9 +25,9 @@ module mfv_chain
    integer, parameter :: resolved = 3
    real(wp), parameter :: error_unresolved = 10.0_wp
    real(wp), parameter :: error_at_start = 0.5_wp
-   !> The same where nodes touch later under a changing normal load, and where fewer than `resolved` nodes slip at an edge: the
-   !> outermost node may have closed and stuck or not (up to 1.5 with 80 to 400 nodes). Under a constant one, contact grows where it
-   !> slips.
+   !> The same where nodes touch later and fewer than `resolved` nodes slip at an edge: the outermost node may have closed and stuck
+   !> or not (up to 1.5 with 80 to 400 nodes). Otherwise, under a changing normal load, `error_at_start` is allowed for (0.1 to 0.3
+   !> with 200 to 1100 nodes); under a constant one, contact grows where it slips.
    real(wp), parameter :: error_of_growth = 1.5_wp
    !> A stuck node at an edge with this part of the limiting shear may slip on another path to the same load.
    real(wp), parameter :: close = 0.8_wp
@@ -382,8 +382,8 @@ contains
 
    !> Error of the tractions of a contact that has begun (`begins`) or grown in the interval, relative to the largest, by the
    !> `status` of its nodes: see error_at_start and error_of_growth. An error at the edge of a contact without slip zones is
-   !> compared with the friction limit, since it changes the slip zones of later steps. `at_limit`: whether a node nearly slips, shape
-   !> (nodes); `presses`: whether the normal load changes; `friction`: the coefficient.
+   !> compared with the friction limit, since it changes the slip zones of later steps. `at_limit`: whether a node nearly slips,
+   !> shape (nodes); `presses`: whether the normal load changes; `friction`: the coefficient.
    pure real(wp) function error_of_edge(status, at_limit, begins, presses, friction) result(error)
       integer, intent(in) :: status(:)
       logical, intent(in) :: at_limit(:), begins, presses

@@ -11,8 +11,8 @@
 !> an increment is treated as stuck. Dissipation: see mfv_chain_dissipation.
 !>
 !> With full coupling the shear tractions depend on how the contact has grown. If it begins and one chain is not accurate (it is, if
-!> the contact grows in proportion to its shape), it begins by events, on few nodes; then intervals double the load or, where that is
-!> not accurate, less. Their errors are compared with tractions and dissipation at the end of the segment.
+!> the contact grows in proportion to its shape), it begins by events, on few nodes; then intervals double the load or, where that
+!> is not accurate, less. Their errors are compared with tractions and dissipation at the end of the segment.
 !>
 !> An interval that would take more solves than it has events is applied by events (mfv_first_violation), which are exact; gross
 !> sliding and separation are therefore found there. The certificate checks large increments at their ends only.
@@ -39,8 +39,8 @@ module mfv_leap
    private
    public :: apply_by_large_increments
 
-   !> An interval shorter than this fraction of a segment is not divided. Where a contact grows that has begun in the segment: of the
-   !> first length of the interval; and shorter than `least_growth` of what is done before it.
+   !> An interval shorter than this fraction of a segment is not divided. Where a contact grows that has begun in the segment: of
+   !> the first length of the interval; and shorter than `least_growth` of what is done before it.
    real(wp), parameter :: shortest = 0.2_wp, least_growth = 0.05_wp
    !> Most increments of an interval; those of an exact one, for the history: one for a number of nodes in contact whose events cost
    !> more.
@@ -203,7 +203,8 @@ contains
       is_coupled = path%model%compliance%has_block(block_wt)
    end function is_coupled
 
-   !> Whether contact begins, or has begun in the segment, on so few nodes that large increments with coupling would not be accurate.
+   !> Whether contact begins, or has begun in the segment, on so few nodes that large increments with coupling would not be
+   !> accurate.
    logical function begins_on_few_nodes(path, interval, progress) result(few)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: interval
@@ -432,8 +433,8 @@ contains
    end subroutine prefer_node_wise
 
    !> Allow errors of iterative solvers that are negligible beside that of a chain and in the certificate: of the rates, only signs
-   !> and corrections of slips are used, and smaller ones where a contact grows that has begun in the segment, whose fronts may rest.
-   !> Without coupling this would save nothing: the preconditioner is exact.
+   !> and corrections of slips are used, and smaller ones where a contact grows that has begun in the segment, whose fronts may
+   !> rest. Without coupling this would save nothing: the preconditioner is exact.
    subroutine allow_errors(path, progress)
       class(contact_path_type), intent(inout) :: path
       type(leap_progress_type), intent(in) :: progress
@@ -527,8 +528,8 @@ contains
 
    !> The work that the error of the dissipation of a chain is compared with, force: the dissipation. If contact begins, that is
    !> often next to nothing: then at least that of a cycle of shear to about 0.8 mu P, as a fraction of (mu P)^2/m, m the contact
-   !> modulus. In later parts of a segment in which it has begun, at least a `part` of the dissipation at the goal, if it grows with the
-   !> square of the load as that of a parabola, but no more than that of such a cycle.
+   !> modulus. In later parts of a segment in which it has begun, at least a `part` of the dissipation at the goal, if it grows with
+   !> the square of the load as that of a parabola, but no more than that of such a cycle.
    pure real(wp) function reference_work(path, progress, chain) result(work)
       class(contact_path_type), intent(in) :: path
       type(leap_progress_type), intent(in) :: progress
