@@ -227,7 +227,7 @@ contains
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       type(leap_progress_type), intent(inout) :: progress
-      real(wp), parameter :: nothing = 1.0e-12_wp, headroom = 3.0_wp
+      real(wp), parameter :: nothing = 1.0e-12_wp, headroom = 4.0_wp
       integer :: nodes, first
 
       progress%by_violations = .true.
