@@ -53,7 +53,8 @@ module mfv_chain
       !> Estimated errors of the final tractions, and their part where contact begins, force/length^2; of the dissipation, force;
       !> the dissipation, force, and the largest traction, force/length^2.
       real(wp) :: traction_error = 0.0_wp, start_error = 0.0_wp, work_error = 0.0_wp, work = 0.0_wp, traction = 0.0_wp
-      !> Largest difference of the final tractions to those of a coarser chain, force/length^2; 0: there is none.
+      !> How much the final tractions change, at most, from those of the chain with fewer increments, force/length^2. Zero: there is
+      !> no such chain.
       real(wp) :: difference = 0.0_wp
       !> The sum of `friction_work` and its estimated error, force.
       real(wp) :: node_wise = 0.0_wp, node_wise_error = 0.0_wp

@@ -18,7 +18,7 @@ module mfv_frictionless
    use mfv_tolerances, only: significant
    implicit none
    private
-   public :: apply_directly, find_statuses_on_mesh, grow_mesh, before_separation, lacks_support, &
+   public :: apply_directly, find_statuses_and_grow, find_statuses_on_mesh, grow_mesh, before_separation, lacks_support, &
              finish_large_increment, subsegment
 
 contains
@@ -31,6 +31,7 @@ contains
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
       type(contact_fields_type) :: fields
+      type(contact_state_type) :: start
       real(wp) :: fraction
       logical :: found, friction
 
@@ -44,7 +45,7 @@ contains
       fraction = before_separation(segment)
       if (lacks_support(path, segment)) fraction = 0.0_wp
       found = .false.
-      if (fraction > 0.0_wp) call find_statuses_and_grow(path, segment, fraction, fields, found)
+      if (fraction > 0.0_wp) call find_statuses_and_grow(path, segment, fraction, fields, found, start)
       if (.not. found) fraction = 0.0_wp
       if (found) then
          call path%take_increment(fields, fields%slip() - path%state%fields%slip(), 0.0_wp, &
@@ -71,14 +72,14 @@ contains
    end subroutine finish_large_increment
 
    !> Statuses and fields at a fraction of the segment, on a mesh that may grow with the contact. `found`: whether there are any;
-   !> otherwise the statuses are unchanged. The fields of `path` remain those of the start.
-   subroutine find_statuses_and_grow(path, segment, fraction, fields, found)
+   !> otherwise the statuses are unchanged. The fields of `path` remain those of the start. `start`: the state before, on that mesh.
+   subroutine find_statuses_and_grow(path, segment, fraction, fields, found, start)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: fraction
       type(contact_fields_type), intent(out) :: fields
       logical, intent(out) :: found
-      type(contact_state_type) :: start
+      type(contact_state_type), intent(out) :: start
       logical :: exceeded, grown
 
       do

@@ -28,8 +28,8 @@ module mfv_leap
    use mfv_contact_system, only: load_type
    use mfv_error, only: error_type
    use mfv_first_violation, only: apply_by_violations
-   use mfv_frictionless, only: apply_directly, before_separation, lacks_support, find_statuses_on_mesh, finish_large_increment, &
-                               grow_mesh, subsegment
+   use mfv_frictionless, only: apply_directly, before_separation, lacks_support, find_statuses_and_grow, find_statuses_on_mesh, &
+                               finish_large_increment, grow_mesh, subsegment
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_count, motion_approach, motion_shift, control_displacement
    use mfv_node_status
@@ -64,7 +64,7 @@ module mfv_leap
       real(wp) :: done = 0.0_wp, goal = 0.0_wp, length = 0.0_wp, longest = 0.0_wp
       logical :: by_violations = .false.
       !> A contact that has begun in the segment, without friction, at the goal: the largest pressure, force/length^2; the friction
-      !> limit, force. Zero: it has not.
+      !> limit, force. Zero: it has not (has_begun).
       real(wp) :: traction = 0.0_wp, sliding_limit = 0.0_wp
       !> The dissipation of the contact before the segment, force.
       real(wp) :: dissipation = 0.0_wp
@@ -102,6 +102,13 @@ contains
       if (progress%goal < 1.0_wp) call apply_by_violations(path, subsegment(segment, progress%goal, 1.0_wp), observer, error)
    end subroutine apply_by_large_increments
 
+   !> Whether the contact has begun in the segment, by events (begin_by_violations).
+   pure logical function has_begun(progress)
+      type(leap_progress_type), intent(in) :: progress
+
+      has_begun = progress%traction > 0.0_wp
+   end function has_begun
+
    !> Set the length of the next interval, but not beyond the goal.
    pure subroutine set_length(progress, length)
       type(leap_progress_type), intent(inout) :: progress
@@ -121,7 +128,7 @@ contains
       real(wp) :: length
 
       length = merge(progress%length, 2.0_wp*progress%length, progress%length < progress%longest)
-      if (.not. progress%traction > 0.0_wp) length = progress%goal
+      if (.not. has_begun(progress)) length = progress%goal
       progress%done = merge(progress%goal, progress%done + progress%length, progress%length >= progress%goal - progress%done)
       call set_length(progress, length)
    end subroutine advance
@@ -131,7 +138,7 @@ contains
       type(leap_progress_type), intent(in) :: progress
 
       length = shortest
-      if (progress%traction > 0.0_wp) length = max(shortest*progress%longest, least_growth*progress%done)
+      if (has_begun(progress)) length = max(shortest*progress%longest, least_growth*progress%done)
    end function shortest_length
 
    !> Try the next interval. If it is not accurate, it is shortened or applied by events (`progress%by_violations`).
@@ -182,7 +189,7 @@ contains
       type(leap_progress_type), intent(in) :: progress
       type(chain_type), intent(in) :: chain
 
-      shortens = progress%traction > 0.0_wp .and. chain%increments > 1 .and. &
+      shortens = has_begun(progress) .and. chain%increments > 1 .and. &
                  chain%start_error <= safety*path%model%scene%method%accuracy*reference_traction(path, progress, chain)
       if (shortens) shortens = relative_traction_error(path, progress, chain) > 1.0_wp
    end function shortens
@@ -193,7 +200,7 @@ contains
       type(leap_progress_type), intent(in) :: progress
       type(chain_type), intent(in) :: chain
 
-      is_worth_it = .not. progress%traction > 0.0_wp .or. 2*chain%solves < solves_per_change*chain%changes
+      is_worth_it = .not. has_begun(progress) .or. 2*chain%solves < solves_per_change*chain%changes
    end function is_worth_it
 
    !> Whether the pressures depend on the shear tractions, so that these depend on how the contact grows.
@@ -214,7 +221,7 @@ contains
       few = is_coupled(path)
       if (.not. few) return
       if (any(in_contact(path%state%status))) then
-         few = progress%traction > 0.0_wp .and. path%state%contact_nodes() < nodes_to_begin
+         few = has_begun(progress) .and. path%state%contact_nodes() < nodes_to_begin
       else
          call first_guess(path, interval, 1.0_wp, contact)
          few = count(contact) < error_at_start/path%model%scene%method%accuracy
@@ -231,7 +238,7 @@ contains
       integer :: nodes, first
 
       progress%by_violations = .true.
-      if (progress%traction > 0.0_wp) return
+      if (has_begun(progress)) return
       call find_goal(path, segment, progress, nodes)
       if (nodes*path%model%scene%method%accuracy < headroom*error_at_start) return
       first = guessed(nothing)
@@ -251,7 +258,8 @@ contains
       end function guessed
    end subroutine begin_by_violations
 
-   !> The contact at the goal without friction: its tractions, for `progress`, and its number of `nodes`, 0 if it is not found.
+   !> The contact at the goal without friction, from none: its tractions, for `progress`, and its number of `nodes`, 0 if it is not
+   !> found.
    subroutine find_goal(path, segment, progress, nodes)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -260,26 +268,19 @@ contains
       type(segment_type) :: frictionless
       type(contact_state_type) :: start
       type(contact_fields_type) :: fields
-      logical :: found, exceeded
+      logical :: found
 
       nodes = 0
       frictionless = segment
       frictionless%friction = .false.
       frictionless%load(motion_shift) = load_type(control_displacement, path%state%fields%motion(motion_shift), 0.0_wp)
-      do
-         start = path%state
-         call path%set_status(in_contact(path%state%status), spread(node_frictionless, 1, size(path%state%status)))
-         fields = start%fields
-         call find_statuses_on_mesh(path, frictionless, progress%goal, fields, found, exceeded)
-         if (found) then
-            nodes = path%state%contact_nodes()
-            progress%traction = maxval(fields%pressure)
-            progress%sliding_limit = path%model%force(path%model%static_friction*fields%pressure)
-         end if
-         path%state = start
-         if (exceeded) call grow_mesh(path, exceeded)
-         if (.not. exceeded) return
-      end do
+      call find_statuses_and_grow(path, frictionless, progress%goal, fields, found, start)
+      if (found) then
+         nodes = path%state%contact_nodes()
+         progress%traction = maxval(fields%pressure)
+         progress%sliding_limit = path%model%force(path%model%static_friction*fields%pressure)
+      end if
+      path%state = start
    end subroutine find_goal
 
    !> Apply the next interval by events.
@@ -443,7 +444,7 @@ contains
       if (.not. (path%model%compliance%has_block(block_up) .and. path%model%compliance%has_block(block_wt))) return
       associate (accuracy => path%model%scene%method%accuracy)
          path%system%allowed = min(visible*accuracy, most)
-         path%system%allowed_in_rates = min(merge(at_fronts, in_rates, progress%traction > 0.0_wp)*accuracy, most_in_rates)
+         path%system%allowed_in_rates = min(merge(at_fronts, in_rates, has_begun(progress))*accuracy, most_in_rates)
       end associate
    end subroutine allow_errors
 
@@ -486,8 +487,8 @@ contains
       wanted = min(max(2.0_wp, merge(1.0_wp, by_tractions, chain%fronts), by_work**merge(0.25_wp, 0.5_wp, chain%begins)), &
                    real(most_increments, wp))
       increments = chain%increments*2**ceiling(log(wanted)/log(2.0_wp) - 1.0e-6_wp)
-      if (progress%traction > 0.0_wp .and. by_tractions > 1.0_wp .and. increments > most_growing) increments = 0
-      if (chain%begins .and. by_tractions > most_increments/chain%increments) increments = 0
+      if ((has_begun(progress) .and. by_tractions > 1.0_wp .and. increments > most_growing) .or. &
+          (chain%begins .and. by_tractions > most_increments/chain%increments)) increments = 0
       if (increments > most_increments .or. &
           (real(chain%solves, wp)*increments)/chain%increments > solves_per_change*chain%changes) increments = 0
    end subroutine choose
@@ -541,7 +542,7 @@ contains
       cycle_work = fraction/path%model%compliance%modulus
       if (chain%begins) then
          work = max(work, cycle_work*path%model%force(path%model%static_friction*chain%after(chain%increments)%pressure)**2)
-      else if (progress%traction > 0.0_wp) then
+      else if (has_begun(progress)) then
          share = (progress%done + progress%length)/progress%goal
          work = max(work, part*min(cycle_work*progress%sliding_limit**2, &
                                    (path%state%dissipation - progress%dissipation + chain%work)/share**2))
