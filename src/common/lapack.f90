@@ -3,7 +3,7 @@ module mfv_lapack
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: ddot, dgemm, dgemv, dger, dgesv, dgetrf, dgetri, dgetrs, dpotrf, dpotri
+   public :: ddot, dgemm, dgemv, dger, dgesv, dgetrf, dgetri, dgetrs, dpotrf, dpotri, dtrsv
 
    interface
       pure function ddot(n, x, incx, y, incy) result(product)
@@ -81,6 +81,14 @@ module mfv_lapack
          real(wp), intent(inout) :: a(lda, *)
          integer, intent(out) :: info
       end subroutine dpotri
+
+      subroutine dtrsv(uplo, trans, diag, n, a, lda, x, incx)
+         import :: wp
+         character, intent(in) :: uplo, trans, diag
+         integer, intent(in) :: n, lda, incx
+         real(wp), intent(in) :: a(lda, *)
+         real(wp), intent(inout) :: x(*)
+      end subroutine dtrsv
    end interface
 
 end module mfv_lapack

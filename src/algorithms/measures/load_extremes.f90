@@ -11,6 +11,7 @@ module mfv_load_extremes
    use mfv_body, only: body_type
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
+   use mfv_element_tree, only: element_tree_type, new_straight_tree
    use mfv_interior, only: has_interior, interior_type, von_mises_stress
    use mfv_interior_half_plane, only: line_load_stress, surface_stress_of
    use mfv_kinds, only: pi, wp
@@ -339,8 +340,8 @@ contains
       integer, parameter :: most_between = 12
       logical :: is_sample(model%nodes())
       integer, allocatable :: nodes(:)
-      real(wp), allocatable :: ends(:)
-      integer :: first(size(patches) + 1), i, j
+      complex(wp), allocatable :: integrals(:)
+      integer :: i, j
 
       is_sample = .false.
       do i = 1, size(patches)
@@ -356,97 +357,124 @@ contains
       samples%arc = [model%arc(nodes), patches%left, patches%right]
       samples%pressure = [state%fields%pressure(nodes), (0.0_wp, i=1, 2*size(patches))]
       samples%shear = [state%fields%shear(nodes), (0.0_wp, i=1, 2*size(patches))]
-      call find_ends()
-      samples%of_shear = integrals_of(state%fields%shear)
-      samples%of_pressure = 0.0_wp*samples%pressure
-      if (abs(aimag(model%scene%lower%elasticity%material%root_product)) > 0.0_wp .or. &
-          abs(aimag(model%scene%upper%elasticity%material%root_product)) > 0.0_wp) &
-         samples%of_pressure = integrals_of(state%fields%pressure)
+      integrals = cauchy_integrals(model, state, patches, nodes)
+      samples%of_shear = aimag(integrals)
+      samples%of_pressure = real(integrals, wp)
+   end subroutine sample_surface
+
+   !> 1/pi integrals of p + i tau over t - x dt at `nodes` and at the left and the right edges of all patches, force/length^2. The
+   !> tractions are constant in each interval; at its own edges those of a patch vanish as roots.
+   function cauchy_integrals(model, state, patches, nodes) result(integrals)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      type(patch_type), intent(in) :: patches(:)
+      integer, intent(in) :: nodes(:)
+      complex(wp) :: integrals(size(nodes) + 2*size(patches))
+      type(element_tree_type) :: tree
+      complex(wp), allocatable :: traction(:)
+      real(wp), allocatable :: from(:), to(:)
+      integer, allocatable :: loaded(:), near(:, :)
+      complex(wp), allocatable :: beyond(:)
+      complex(wp) :: sum_beyond
+      real(wp) :: period
+      integer :: i, j
+
+      period = model%scene%repeat_length()
+      loaded = [((j, j=patches(i)%first, patches(i)%last), i=1, size(patches))]
+      traction = cmplx(state%fields%pressure(loaded), state%fields%shear(loaded), wp)
+      from = place(model%arc(loaded) - 0.5_wp*model%width(loaded))
+      to = place(model%arc(loaded) + 0.5_wp*model%width(loaded))
+      beyond = traction*log(cosine(model%arc(loaded) + 0.5_wp*model%width(loaded)) &
+                            /cosine(model%arc(loaded) - 0.5_wp*model%width(loaded)))
+      sum_beyond = sum(beyond)
+      tree = new_straight_tree(from, to, traction, traction)
+      allocate (near(2, tree%leaves()))
+      integrals(:size(nodes)) = [(over_all(place(model%arc(nodes(i)))), i=1, size(nodes))]
+      j = 1
+      do i = 1, size(patches)
+         associate (patch => patches(i), last => j + patches(i)%last - patches(i)%first)
+            integrals(size(nodes) + i) = at_edge(patch, -1, patch%left, j, last)
+            integrals(size(nodes) + size(patches) + i) = at_edge(patch, 1, patch%right, j, last)
+            j = last + 1
+         end associate
+      end do
+      integrals = integrals/pi
 
    contains
 
-      !> Ends of the intervals in contact: those of a patch begin with the `first` one.
-      subroutine find_ends()
-         integer :: node
+      !> A place at which the integral is that over 1/(t - x), but for what is `beyond`, which does not depend on it. Where the
+      !> surface repeats every length l, sin(pi (t - x)/l) is the difference of the tangents times both cosines.
+      elemental real(wp) function place(arc)
+         real(wp), intent(in) :: arc
 
-         first = 1
-         allocate (ends(sum(patches%last - patches%first + 2)))
-         do i = 1, size(patches)
-            associate (from => patches(i)%first, to => patches(i)%last)
-               first(i + 1) = first(i) + to - from + 2
-               ends(first(i):first(i + 1) - 1) = [model%arc(from) - 0.5_wp*model%width(from), &
-                                                  (model%arc(node) + 0.5_wp*model%width(node), node=from, to)]
-            end associate
-         end do
-      end subroutine find_ends
+         place = arc
+         if (period > 0.0_wp) place = tan(angle_of(arc))
+      end function place
 
-      !> 1/pi integrals of a `traction` over t - x dt at the samples.
-      function integrals_of(traction) result(integrals)
-         real(wp), intent(in) :: traction(:)
-         real(wp) :: integrals(size(samples%arc)), steps(size(ends))
-         integer :: node
+      !> The cosine of that angle; one where the surface does not repeat.
+      elemental real(wp) function cosine(arc)
+         real(wp), intent(in) :: arc
 
-         ! Steps down at the ends.
-         do i = 1, size(patches)
-            associate (from => patches(i)%first, to => patches(i)%last)
-               steps(first(i):first(i + 1) - 1) = [-traction(from), (traction(node) - traction(node + 1), node=from, to - 1), &
-                                                   traction(to)]
-            end associate
-         end do
-         integrals = [(integral_over(steps, 1, size(ends), model%arc(nodes(i))), i=1, size(nodes)), &
-                      (integral_at_edge(traction, steps, -1, i), i=1, size(patches)), &
-                      (integral_at_edge(traction, steps, 1, i), i=1, size(patches))]/pi
-      end function integrals_of
+         cosine = 1.0_wp
+         if (period > 0.0_wp) cosine = cos(angle_of(arc))
+      end function cosine
 
-      !> Integral of a traction over t - x dt over the intervals of some ends, with a constant traction in each.
-      pure real(wp) function integral_over(steps, from, to, x)
-         real(wp), intent(in) :: steps(:)
-         integer, intent(in) :: from, to
+      !> Angle of an arc length in the period, less than a right angle.
+      elemental real(wp) function angle_of(arc)
+         real(wp), intent(in) :: arc
+         real(wp), parameter :: most = 0.5_wp*pi*(1.0_wp - 4.0_wp*epsilon(1.0_wp))
+
+         angle_of = max(-most, min(most, pi*(arc - model%scene%mesh%middle)/period))
+      end function angle_of
+
+      !> The integral over all intervals at a place.
+      complex(wp) function over_all(x)
          real(wp), intent(in) :: x
+         complex(wp) :: distant(4)
+         integer :: i, number
 
-         integral_over = sum(steps(from:to)*log(max(chord(ends(from:to) - x), tiny(1.0_wp))))
-      end function integral_over
+         call tree%find_distant(cmplx([x, x], 0.0_wp, wp), distant, near, number)
+         over_all = sum_beyond + distant(1)
+         do i = 1, number
+            over_all = over_all + over_intervals(x, near(1, i), near(2, i))
+         end do
+      end function over_all
 
-      !> Magnitude of a distance; where the surface repeats, of which the logarithm is that of all images.
-      elemental real(wp) function chord(distance)
-         real(wp), intent(in) :: distance
+      !> The integral over the intervals `first` to `last` at a place, without the constant.
+      complex(wp) function over_intervals(x, first, last)
+         real(wp), intent(in) :: x
+         integer, intent(in) :: first, last
 
-         chord = abs(distance)
-         associate (period => model%scene%repeat_length())
-            if (period > 0.0_wp) chord = abs(sin(pi*distance/period))*period/pi
-         end associate
-      end function chord
+         over_intervals = sum(traction(first:last)*log(max(abs(to(first:last) - x), tiny(1.0_wp)) &
+                                                       /max(abs(from(first:last) - x), tiny(1.0_wp))))
+      end function over_intervals
 
-      !> The same over all patches at the left (-1) or right edge of one. In that patch t = c - a cos(angle): the integral over t
-      !> of the root is a^2/2 (angle - sin cos), that of the root over t - x is a (sin - side angle).
-      pure real(wp) function integral_at_edge(traction, steps, side, number) result(integral)
-         real(wp), intent(in) :: traction(:), steps(:)
-         integer, intent(in) :: side, number
-         real(wp) :: half, edge, angle(patches(number)%first:patches(number)%last + 1)
-         real(wp) :: root(patches(number)%first:patches(number)%last)
+      !> The integral over all intervals at the left (-1) or right `edge` of a patch, from the interval `first` to `last`. In that
+      !> patch t = c - a cos(angle): the integral over t of the root is a^2/2 (angle - sin cos), that of the root over t - x is
+      !> a (sin - side angle).
+      complex(wp) function at_edge(patch, side, edge, first, last)
+         type(patch_type), intent(in) :: patch
+         integer, intent(in) :: side, first, last
+         real(wp), intent(in) :: edge
+         real(wp) :: half, angle(first:last + 1), root(first:last)
 
-         associate (patch => patches(number))
-            half = 0.5_wp*patch%length()
-            edge = merge(patch%right, patch%left, side > 0)
-            integral = integral_over(steps, 1, first(number) - 1, edge) + integral_over(steps, first(number + 1), size(ends), edge)
-            if (.not. half > 0.0_wp) return
-            associate (from => patch%first, to => patch%last)
-               angle(from) = 0.0_wp
-               angle(from + 1:to) = acos(max(-1.0_wp, min(1.0_wp, (patch%left + half - model%arc(from + 1:to) &
-                                                                   + 0.5_wp*model%width(from + 1:to))/half)))
-               angle(to + 1) = pi
-               associate (a => angle(from:to), b => angle(from + 1:to + 1), force => traction(from:to)*model%width(from:to))
-                  root = 0.5_wp*half*(b - a - sin(b)*cos(b) + sin(a)*cos(a))
-                  where (root > 0.0_wp) root = force/root*(sin(b) - sin(a) - side*(b - a))
-               end associate
+         half = 0.5_wp*patch%length()
+         at_edge = over_all(place(edge)) - over_intervals(place(edge), first, last) - sum(beyond(first:last))
+         if (.not. half > 0.0_wp) return
+         associate (inner => model%arc(patch%first + 1:patch%last), width => model%width(patch%first:patch%last))
+            angle(first) = 0.0_wp
+            angle(first + 1:last) = acos(max(-1.0_wp, min(1.0_wp, (patch%left + half - inner + 0.5_wp*width(2:))/half)))
+            angle(last + 1) = pi
+            associate (a => angle(first:last), b => angle(first + 1:last + 1))
+               root = 0.5_wp*half*(b - a - sin(b)*cos(b) + sin(a)*cos(a))
+               where (root > 0.0_wp) root = width/root*(sin(b) - sin(a) - side*(b - a))
             end associate
-            integral = integral + sum(root)
          end associate
-      end function integral_at_edge
-   end subroutine sample_surface
-
-   !> Estimate of the largest von Mises stress of a body, force/length^2: at the samples, and below each patch under line loads at
-   !> the nodes. `stress`: sigma_xx at the samples.
+         at_edge = at_edge + sum(traction(first:last)*root)
+      end function at_edge
+   end function cauchy_integrals
+   !> Estimate of the largest von Mises stress of a body, force/length^2: at the samples, and below the patches with the largest
+   !> pressures under line loads at the nodes. `stress`: sigma_xx at the samples.
    real(wp) function largest_von_mises(model, state, patches, samples, stress, body, side, bulk) result(largest)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
@@ -458,15 +486,21 @@ contains
       integer, parameter :: across = 12
       !> Depths over the half-width, up to that of the largest stress under an ellipse of pressure.
       real(wp), parameter :: depths(6) = [0.1_wp, 0.2_wp, 0.3_wp, 0.4_wp, 0.55_wp, 0.7_wp]
-      real(wp) :: sign, depth, below(3)
-      integer :: i, j, k, m
+      integer, parameter :: most_patches = 20
+      real(wp) :: sign, depth, below(3), peak(size(patches))
+      logical :: left(size(patches))
+      integer :: i, j, k, m, number
 
       sign = merge(1.0_wp, -1.0_wp, side == 1)
       largest = of_components(bulk, 0.0_wp, 0.0_wp)
       do i = 1, size(samples%arc)
          largest = max(largest, of_components(stress(i), -samples%pressure(i), sign*samples%shear(i)))
       end do
-      do i = 1, size(patches)
+      peak = [(maxval(state%fields%pressure(patches(i)%first:patches(i)%last)), i=1, size(patches))]
+      left = .true.
+      do number = 1, min(size(patches), most_patches)
+         i = maxloc(peak, dim=1, mask=left)
+         left(i) = .false.
          do k = 1, size(depths)
             depth = 0.5_wp*depths(k)*patches(i)%length()
             do j = 1, across

@@ -1,29 +1,26 @@
 !> Approximate inverses of the diagonal blocks C_wp and C_ut on the nodes of a contact, each in O(n log n).
 !>
 !> The surface of every elastic body responds to nearby tractions like a half-plane, by the logarithm of the distance. On
-!> consecutive nodes this is a Toeplitz matrix with a known exact inverse (mfv_toeplitz_inverse), on several patches a matrix of
-!> such blocks, whose coupling is of small rank (mfv_patched_inverse). On a half-plane the iteration then only resolves the coupling
-!> of pressure and shear, whose strength does not depend on the mesh.
-!>
-!> Nodes held by bristles (softness c > 0, mfv_krylov_system) need 1/(C_ut + c): their rows are interpolated between circulant
-!> inverses for a few values of c. Nodes whose friction decreases with slip (c < 0) are treated as independent: where the bodies
-!> can unload as fast as friction decreases, |c| dominates C_ut + c.
+!> consecutive nodes this is a Toeplitz matrix with a known exact inverse (mfv_toeplitz_inverse): on a half-plane the iteration then
+!> only resolves the coupling of pressure and shear, whose strength does not depend on the mesh. On other sets of nodes, and where
+!> nodes are held by bristles (softness c > 0, mfv_krylov_system), which need 1/(C_ut + c), it is an approximate sparse inverse
+!> (mfv_sparse_inverse). Nodes whose friction decreases with slip (c < 0) are treated as independent: where the bodies can unload as
+!> fast as friction decreases, |c| dominates C_ut + c.
 module mfv_krylov_preconditioner
    use mfv_compliance, only: block_ut, block_wp, compliance_type
-   use mfv_fourier, only: back_transform, fast_length, real_transform
    use mfv_half_plane, only: log_kernel
    use mfv_kinds, only: wp
-   use mfv_patched_inverse, only: patched_inverse_type
+   use mfv_sparse_inverse, only: sparse_inverse_type
+   use mfv_toeplitz_inverse, only: toeplitz_inverse_type
    implicit none
    private
    public :: krylov_preconditioner_type
 
-   !> Inverse on a set of nodes.
+   !> Inverse on a set of nodes: of a Toeplitz matrix if they are consecutive and hard, else sparse.
    type :: block_type
-      type(patched_inverse_type) :: inverse
-      !> The nodes, and the number of the node before the first.
-      integer, allocatable :: nodes(:)
-      integer :: before = 0
+      logical :: is_toeplitz = .true.
+      type(toeplitz_inverse_type) :: toeplitz
+      type(sparse_inverse_type) :: sparse
    end type block_type
 
    type :: krylov_preconditioner_type
@@ -37,10 +34,8 @@ module mfv_krylov_preconditioner
       logical :: is_logarithmic = .false.
       !> (Both allocatable: otherwise gfortran 12 does not free the components of the second.)
       type(block_type), allocatable :: contact, held
-      !> Softness of the held nodes, shape (held), if any is nonzero; weights of the levels, shape (held, 0 to levels), and the
-      !> inverses of the levels, shape (length/2 + 1, levels).
-      logical :: soft = .false.
-      real(wp), allocatable :: softness(:), weight(:, :), symbol(:, :)
+      !> Softness of the held nodes where it is negative, else 0, shape (held).
+      real(wp), allocatable :: softness(:)
    contains
       procedure :: prepare
       procedure :: set_contact
@@ -94,8 +89,8 @@ contains
    pure logical function is_exact(self)
       class(krylov_preconditioner_type), intent(in) :: self
 
-      is_exact = self%is_logarithmic .and. .not. self%soft
-      if (is_exact) is_exact = self%contact%inverse%group_count() <= 1 .and. self%held%inverse%group_count() <= 1
+      is_exact = self%is_logarithmic .and. self%contact%is_toeplitz .and. self%held%is_toeplitz
+      if (is_exact) is_exact = all(self%softness >= 0.0_wp)
    end function is_exact
 
    !> Approximate smallest eigenvalue of the blocks, in the units of the system.
@@ -110,8 +105,7 @@ contains
       class(krylov_preconditioner_type), intent(inout) :: self
       integer, intent(in) :: nodes(:)
 
-      call place_nodes(self%contact, nodes)
-      call self%contact%inverse%set_nodes(self%kernel, nodes)
+      call set_block(self%contact, self%kernel, nodes, 0.0_wp*nodes)
    end subroutine set_contact
 
    !> Set the nodes whose shear is unknown, ascending, and their softness, shape (held). (r K + c)^-1 is (K + c/r)^-1/r.
@@ -119,104 +113,64 @@ contains
       class(krylov_preconditioner_type), intent(inout) :: self
       integer, intent(in) :: nodes(:)
       real(wp), intent(in) :: softness(:)
+      logical :: firm(size(nodes))
 
-      call place_nodes(self%held, nodes)
-      call self%held%inverse%set_nodes(self%kernel, nodes, self%contact%inverse)
-      self%soft = any(abs(softness) > 0.0_wp)
-      if (self%soft) call set_levels(self, softness/self%shear_ratio)
+      firm = softness >= 0.0_wp
+      self%softness = min(softness, 0.0_wp)
+      call set_block(self%held, self%kernel, pack(nodes, firm), pack(softness/self%shear_ratio, firm), self%contact)
    end subroutine set_held
 
-   subroutine place_nodes(block, nodes)
+   !> Set the nodes of a block, ascending, and their softness. `other`: a block whose inverse may be a start.
+   subroutine set_block(block, kernel, nodes, softness, other)
       type(block_type), intent(inout) :: block
+      real(wp), intent(in) :: kernel(:), softness(:)
       integer, intent(in) :: nodes(:)
+      type(block_type), intent(in), optional :: other
+      integer :: n
 
-      block%nodes = nodes
-      if (size(nodes) > 0) block%before = nodes(1) - 1
-   end subroutine place_nodes
-
-   !> Levels of softness with a constant ratio, from negligible to dominant softness, and the weights for interpolation between
-   !> them.
-   subroutine set_levels(self, softness)
-      type(krylov_preconditioner_type), intent(inout) :: self
-      real(wp), intent(in) :: softness(:)
-      real(wp), parameter :: ratio = 6.0_wp, margin = 10.0_wp
-      real(wp), allocatable :: values(:)
-      complex(wp), allocatable :: spectrum(:)
-      real(wp) :: first, place
-      integer :: i, level, levels, length
-
-      self%softness = softness
-      length = fast_length(2*(self%held%nodes(size(softness)) - self%held%before))
-      allocate (values(length), spectrum(length/2 + 1))
-      values(:length/2 + 1) = self%kernel(:length/2 + 1)
-      values(length/2 + 2:) = self%kernel(length/2:2:-1)
-      call real_transform(values, spectrum)
-      first = self%smallest()/margin
-      levels = 1 + ceiling(log(margin*maxval(abs(real(spectrum, wp)))/first)/log(ratio))
-      if (allocated(self%weight)) deallocate (self%weight, self%symbol)
-      allocate (self%weight(size(softness), 0:levels), source=0.0_wp)
-      allocate (self%symbol(length/2 + 1, levels))
-      do level = 1, levels
-         self%symbol(:, level) = 1.0_wp/(length*(max(real(spectrum, wp), self%smallest()) + first*ratio**(level - 1)))
-      end do
-      do i = 1, size(softness)
-         place = 0.0_wp
-         if (softness(i) > first/ratio) place = 1.0_wp + log(softness(i)/first)/log(ratio)
-         level = min(int(place), levels)
-         if (place >= levels .or. softness(i) < 0.0_wp) cycle
-         self%weight(i, level) = 1.0_wp - (place - level)
-         self%weight(i, level + 1) = place - level
-      end do
-   end subroutine set_levels
+      n = size(nodes)
+      block%is_toeplitz = n == 0
+      if (n > 0) block%is_toeplitz = nodes(n) - nodes(1) == n - 1 .and. .not. any(softness > 0.0_wp)
+      if (.not. block%is_toeplitz) then
+         call block%sparse%set_nodes(kernel, nodes, softness)
+         return
+      end if
+      if (present(other)) then
+         if (other%is_toeplitz .and. abs(other%toeplitz%order - n) < abs(block%toeplitz%order - n)) &
+            call block%toeplitz%copy_order(other%toeplitz)
+      end if
+      call block%toeplitz%set_order(kernel, n)
+   end subroutine set_block
 
    !> Tractions of the nodes in contact by displacements, shape (contact), both in `values`.
    subroutine apply_contact(self, values)
       class(krylov_preconditioner_type), intent(inout) :: self
       real(wp), intent(inout) :: values(:)
 
-      call self%contact%inverse%apply(values)
+      call apply_block(self%contact, values)
    end subroutine apply_contact
 
    !> Tractions of the held nodes by displacements, shape (held), both in `values`.
    subroutine apply_held(self, values)
       class(krylov_preconditioner_type), intent(inout) :: self
       real(wp), intent(inout) :: values(:)
-      real(wp), allocatable :: right(:)
+      real(wp), allocatable :: firm(:)
 
-      if (.not. self%soft) then
-         call self%held%inverse%apply(values)
-         values = values/self%shear_ratio
-         return
-      end if
-      values = values/self%shear_ratio
-      right = values
-      ! Independent nodes do not contribute to the displacements of the others.
-      where (sum(self%weight, dim=2) <= 0.0_wp) values = 0.0_wp
-      right = merge(right/merge(self%softness, 1.0_wp, abs(self%softness) > 0.0_wp), values, &
-                    sum(self%weight, dim=2) <= 0.0_wp)
-      call add_levels(self, values)
-      where (sum(self%weight, dim=2) <= 0.0_wp) values = right
+      firm = pack(values, self%softness >= 0.0_wp)/self%shear_ratio
+      call apply_block(self%held, firm)
+      where (self%softness < 0.0_wp) values = values/self%softness
+      values = unpack(firm, self%softness >= 0.0_wp, values)
    end subroutine apply_held
 
-   !> The weighted sum of the inverses of all levels.
-   subroutine add_levels(self, values)
-      type(krylov_preconditioner_type), intent(inout) :: self
+   subroutine apply_block(block, values)
+      type(block_type), intent(inout) :: block
       real(wp), intent(inout) :: values(:)
-      complex(wp) :: spectrum(size(self%symbol, 1)), product(size(self%symbol, 1))
-      real(wp) :: work(2*(size(self%symbol, 1) - 1))
-      integer :: level
 
-      work = 0.0_wp
-      work(self%held%nodes - self%held%before) = values
-      call real_transform(work, spectrum)
-      if (any(self%weight(:, 0) > 0.0_wp)) call self%held%inverse%apply(values)
-      values = self%weight(:, 0)*values
-      do level = 1, size(self%symbol, 2)
-         if (.not. any(self%weight(:, level) > 0.0_wp)) cycle
-         product = self%symbol(:, level)*spectrum
-         call back_transform(product, work)
-         values = values + self%weight(:, level)*work(self%held%nodes - self%held%before)
-      end do
-   end subroutine add_levels
+      if (block%is_toeplitz) then
+         if (size(values) > 0) call block%toeplitz%apply(values)
+      else
+         call block%sparse%apply(values)
+      end if
+   end subroutine apply_block
 
 end module mfv_krylov_preconditioner
