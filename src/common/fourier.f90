@@ -154,11 +154,11 @@ contains
       is_aligned = modulo(transfer(address, boundary), boundary) == 0
    end function is_aligned
 
-   !> Smallest length, at least `at_least` and 16, that is 1, 5 or 15 times a power of 2: few plans serve many lengths, and 3
-   !> and 9 times a power are slower in FFTW than the next longer one.
+   !> Smallest length, at least `at_least` and 16, that is 1, 5, 15, 25 or 75 times a power of 2: few plans serve many lengths, and
+   !> 3, 7 and 9 times a power are slower in FFTW than the next longer one.
    pure integer function fast_length(at_least)
       integer, intent(in) :: at_least
-      integer, parameter :: odd(3) = [1, 5, 15]
+      integer, parameter :: odd(5) = [1, 5, 15, 25, 75]
       integer :: i, length
 
       fast_length = huge(1)

@@ -9,7 +9,7 @@
 !> is the inverse transform of [(A^ + C^)/2 - B^] Z + (A^ - C^)/2 Z*, X its real and Y its imaginary part, with the real
 !> numbers A^, C^ (cosine sums) and B^ (sine sum).
 module mfv_toeplitz
-   use mfv_fourier, only: backward, complex_transform, fast_length, forward
+   use mfv_fourier, only: back_transform, backward, complex_transform, fast_length, forward, real_transform
    use mfv_kinds, only: wp
    implicit none
    private
@@ -75,13 +75,45 @@ contains
       complex(wp) :: nearby(short, 2)
       complex(wp), allocatable :: work(:, :)
 
-      if (self%length <= short) then
+      if (do_not_mix(self) .and. .not. any(abs(x) > 0.0_wp)) then
+         by_x = 0.0_wp
+         call multiply_one(self, y, by_y)
+      else if (do_not_mix(self) .and. .not. any(abs(y) > 0.0_wp)) then
+         by_y = 0.0_wp
+         call multiply_one(self, x, by_x)
+      else if (self%length <= short) then
          call multiply_in(self, nearby(:self%length, 1), nearby(:self%length, 2), x, by_x, y, by_y)
       else
          allocate (work(self%length, 2))
          call multiply_in(self, work(:, 1), work(:, 2), x, by_x, y, by_y)
       end if
    end subroutine multiply
+
+   !> Whether x and y do not mix: A = C and B = 0.
+   pure logical function do_not_mix(self)
+      class(toeplitz_type), intent(in) :: self
+
+      do_not_mix = .not. (allocated(self%mirrored) .or. self%coupled)
+   end function do_not_mix
+
+   !> A times x, both of shape (nodes), by a transform of half the length.
+   subroutine multiply_one(self, x, by_x)
+      class(toeplitz_type), intent(in) :: self
+      real(wp), intent(in) :: x(:)
+      real(wp), intent(out) :: by_x(:)
+      real(wp) :: values(self%length)
+      complex(wp) :: spectrum(self%length/2 + 1)
+      integer :: k
+
+      values(:self%nodes) = x
+      values(self%nodes + 1:) = 0.0_wp
+      call real_transform(values, spectrum)
+      do k = 1, size(spectrum)
+         spectrum(k) = cmplx(self%straight(k)*real(spectrum(k), wp), self%straight(k)*aimag(spectrum(k)), wp)
+      end do
+      call back_transform(spectrum, values)
+      by_x = values(:self%nodes)
+   end subroutine multiply_one
 
    !> The same with the work spaces `values` and `work`, shape (length).
    subroutine multiply_in(self, values, work, x, by_x, y, by_y)
@@ -96,8 +128,7 @@ contains
 
       n = self%nodes
       length = self%length
-      ! With A = C and B = 0, x and y do not mix.
-      alike = .not. (allocated(self%mirrored) .or. self%coupled)
+      alike = do_not_mix(self)
       factor = 1.0_wp
       largest_x = 1.0_wp
       largest_y = 1.0_wp

@@ -16,7 +16,7 @@
 !> not depend on that of nodes: about 12 for nu = 0.3 and mu = 0.5, about 36 for nu = 0 and mu = 3.
 module mfv_krylov_system
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use mfv_compliance, only: block_up
+   use mfv_compliance, only: block_up, block_wt
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_system
@@ -336,7 +336,6 @@ contains
       done = .false.
       ! If GMRES takes the inverses as exact, the round-off that their updates accumulate does not appear in its residual.
       checked = tolerance <= drift .and. self%preconditioner%is_exact()
-      scale = 0.0_wp
       before = huge(1.0_wp)
       target = 0.0_wp
       do pass = 1, most_passes
@@ -348,25 +347,56 @@ contains
          reached = norm2(rows)
          fails = .not. ieee_is_finite(reached)
          if (fails) return
-         if (pass == 1 .and. reached > worth_keeping*norm2(unknowns)) then
-            ! A zero initial guess is better.
-            if (any(abs(unknowns) > 0.0_wp)) then
-               unknowns = 0.0_wp
-               call find_residual(self, model, right, unknowns, rows)
-               call precondition(self, model, rows)
-               reached = norm2(rows)
-            end if
-         end if
-         scale = max(scale, reached, norm2(unknowns))
+         if (pass == 1 .and. reached > worth_keeping*norm2(unknowns) .and. any(abs(unknowns) > 0.0_wp)) &
+            call try_zero(self, model, right, unknowns, rows, reached)
+         scale = norm2(unknowns)
+         if (.not. scale > 0.0_wp) scale = reached
          target = max(tolerance*scale, round_off(self, right))
+         if (.not. model%compliance%has_block(block_wt)) call drop_accurate(self, target, rows)
          ! A guess within the tolerance is not changed.
          if (reached <= merge(near_enough, 1.0_wp, pass == 1)*target) return
          if (reached > progress*before) exit
          before = reached
          call improve(self, model, rows, target, unknowns, done)
+         done = done .and. self%gmres%residual() <= max(tolerance*norm2(unknowns), round_off(self, right))
       end do
       fails = reached > max(significant*scale, 1.0e2_wp*target)
    end subroutine iterate
+
+   !> Start from zero if the residual, `reached`, is then smaller. `rows`: the preconditioned residual.
+   subroutine try_zero(self, model, right, unknowns, rows, reached)
+      class(krylov_system_type), intent(inout) :: self
+      type(contact_model_type), intent(in) :: model
+      type(right_side_type), intent(in) :: right
+      real(wp), intent(inout) :: unknowns(:), rows(:), reached
+      real(wp) :: of_zero(size(rows)), zero(size(rows))
+
+      zero = 0.0_wp
+      call find_residual(self, model, right, zero, of_zero)
+      call precondition(self, model, of_zero)
+      if (norm2(of_zero) < reached) then
+         unknowns = zero
+         rows = of_zero
+         reached = norm2(rows)
+      end if
+   end subroutine try_zero
+
+   !> Set the residuals of pressures and motions to zero where they are far below the `target`, so that what does not change costs
+   !> nothing: without normal displacements by shear pressures are constant under a changing tangential load.
+   pure subroutine drop_accurate(self, target, rows)
+      class(krylov_system_type), intent(in) :: self
+      real(wp), intent(in) :: target
+      real(wp), intent(inout) :: rows(:)
+      real(wp), parameter :: far_below = 0.1_wp
+      integer :: i, m
+
+      m = size(self%contact)
+      if (.not. norm2(rows(:m)) <= far_below*target) return
+      rows(:m) = 0.0_wp
+      do i = m + size(self%held) + 1, size(rows)
+         if (abs(rows(i)) <= far_below*target) rows(i) = 0.0_wp
+      end do
+   end subroutine drop_accurate
 
    !> Error of the unknowns due to round-off of the displacements (2-norm).
    real(wp) function round_off(self, right)
@@ -543,7 +573,7 @@ contains
 
       m = size(self%contact)
       if (m == 0) return
-      call self%preconditioner%apply_contact(rows(:m))
+      if (any(abs(rows(:m)) > 0.0_wp)) call self%preconditioner%apply_contact(rows(:m))
       if (size(self%held) == 0) return
       if (self%coupled .and. any(abs(rows(:m)) > 0.0_wp)) then
          self%pressure = 0.0_wp

@@ -10,6 +10,7 @@
 !> edge then converges quadratically, and the number of solves hardly depends on the number of nodes. Changing only the violating
 !> nodes would just halve the distance.
 module mfv_active_set
+   use, intrinsic :: iso_fortran_env, only: int64
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path, only: contact_path_type, segment_type
    use mfv_contact_state, only: contact_state_type
@@ -29,8 +30,10 @@ module mfv_active_set
    !> Most linear solves at one load.
    integer, parameter :: most_solves = 60
    !> Relative error of tractions that intermediate solutions may have, until only a `few` nodes change.
-   real(wp), parameter :: intermediate = 1.0e-5_wp
+   real(wp), parameter :: intermediate = 1.0e-6_wp
    integer, parameter :: few = 2
+   !> Most iterations of a solve that is cheap enough to be accurate.
+   integer, parameter :: cheap = 4
    !> Most nodes at fronts by which the statuses that the rates require may differ from those that the state does: where the slip at
    !> a front is only nearly as assumed, these alternate.
    integer, parameter :: at_fronts = 4
@@ -59,11 +62,12 @@ contains
       real(wp) :: allowed
       type(contact_state_type) :: consistent
       logical :: possible, by_edges, rough, is_consistent
+      integer(int64) :: iterations
       integer :: solve, first, looks
 
       found = .false.
       allowed = path%system%allowed
-      rough = present(held) .and. allowed > 0.0_wp .and. allowed < intermediate
+      rough = allowed < intermediate
       by_edges = .true.
       first = 1
       hold = path%state%fields%slip()
@@ -77,13 +81,14 @@ contains
          if (.not. possible) return
          path%state%stuck_slip = hold
          path%system%allowed = merge(intermediate, allowed, rough)
+         iterations = path%system%iterations
          call solve_with_fronts(path, constraints, path%state%stuck_slip, ahead, fields, possible, held)
          path%system%allowed = allowed
          if (.not. possible) return
          call find_wanted(path, segment, fields, wanted, held)
          found = all(wanted == path%state%status)
          is_consistent = found
-         if (rough .and. count(wanted /= path%state%status) <= few) then
+         if (rough .and. (count(wanted /= path%state%status) <= few .or. path%system%iterations - iterations <= cheap)) then
             rough = .false.
             first = solve + 1
             if (found) cycle
@@ -409,6 +414,7 @@ contains
       type(contact_fields_type), intent(in) :: fields
       integer, intent(out) :: wanted(:)
       logical, intent(in), optional :: held(:)
+      real(wp), parameter :: missed = 3.0_wp
       real(wp), dimension(size(wanted)) :: gap, slipped
       real(wp) :: traction, motion, tolerance, allowed(size(inequalities))
       logical :: violated(size(inequalities))
@@ -421,6 +427,9 @@ contains
       gap = path%model%gap(fields)
       slipped = 0.0_wp
       if (path%model%tangential) slipped = fields%slip() - path%state%stuck_slip
+      ! An iterative solution misses the equalities; inequalities are not more accurate.
+      motion = max(motion, missed*maxval(abs(gap), mask=in_contact(path%state%status)), &
+                   missed*maxval(abs(slipped), mask=path%state%status == node_stick))
       if (present(held)) slipped = merge(slipped, 0.0_wp, held)
       closed = node_frictionless
       if (segment%friction .and. path%model%tangential) closed = node_stick
