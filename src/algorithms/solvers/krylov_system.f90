@@ -117,6 +117,7 @@ contains
       type(prescribed_type) :: prescribed
       type(right_side_type) :: right
       real(wp), allocatable :: unknowns(:)
+      real(wp) :: error
 
       self%tolerance = margin*max(model%scene%method%linear_tolerance, self%allowed)
       self%rate_tolerance = max(self%tolerance, margin*self%allowed_in_rates)
@@ -132,8 +133,9 @@ contains
          right = right_side(self, model, constraints%status, prescribed)
          unknowns = [start%pressure(self%contact)/self%stress, start%shear(self%held)/self%stress, &
                      start%motion(self%free)/self%motion_unit(self%free)]
-         call iterate(self, model, right, self%tolerance/margin, unknowns, fails)
+         call iterate(self, model, right, self%tolerance/margin, unknowns, fails, error)
          if (fails) return
+         self%tolerance = min(self%tolerance, margin*max(model%scene%method%linear_tolerance, error))
          call set_fields(self, model, prescribed, right, unknowns, response%state)
       end if
 
@@ -142,8 +144,9 @@ contains
       associate (last => self%last(constraints%kind))
          unknowns = [last%pressure(self%contact), last%shear(self%held), last%motion(self%free)]
       end associate
-      call iterate(self, model, right, merge(self%tolerance, self%rate_tolerance, constraints%kind == rates_of_loads)/margin, &
-                   unknowns, fails)
+      call iterate(self, model, right, max(model%scene%method%linear_tolerance, self%allowed, &
+                                           merge(0.0_wp, self%allowed_in_rates, constraints%kind == rates_of_loads)), &
+                   unknowns, fails, error)
       if (fails) return
       call set_fields(self, model, prescribed, right, unknowns, response%rate)
       associate (last => self%last(constraints%kind))
@@ -318,14 +321,16 @@ contains
       motion(self%free) = unknowns(size(self%contact) + size(self%held) + 1:)
    end function motion_of
 
-   !> Iterate until the `unknowns` meet the relative `tolerance`. `fails`: they do not. `found` then belongs to them.
-   subroutine iterate(self, model, right, tolerance, unknowns, fails)
+   !> Iterate until the `unknowns` meet the relative `tolerance`; their `error` can be much smaller. `fails`: they do not meet it.
+   !> `found` then belongs to them.
+   subroutine iterate(self, model, right, tolerance, unknowns, fails, error)
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(right_side_type), intent(in) :: right
       real(wp), intent(in) :: tolerance
       real(wp), intent(inout) :: unknowns(:)
       logical, intent(out) :: fails
+      real(wp), intent(out) :: error
       real(wp), parameter :: worth_keeping = 0.5_wp, progress = 0.5_wp, near_enough = 2.0_wp, &
                              drift = 1.0e-10_wp
       real(wp) :: rows(size(unknowns)), reached, before, scale, target
@@ -333,6 +338,7 @@ contains
       logical :: done, checked
 
       fails = .false.
+      error = 0.0_wp
       done = .false.
       ! If GMRES takes the inverses as exact, the round-off that their updates accumulate does not appear in its residual.
       checked = tolerance <= drift .and. self%preconditioner%is_exact()
@@ -352,13 +358,16 @@ contains
          scale = norm2(unknowns)
          if (.not. scale > 0.0_wp) scale = reached
          target = max(tolerance*scale, round_off(self, right))
+         error = reached/scale
          if (.not. model%compliance%has_block(block_wt)) call drop_accurate(self, target, rows)
          ! A guess within the tolerance is not changed.
          if (reached <= merge(near_enough, 1.0_wp, pass == 1)*target) return
          if (reached > progress*before) exit
          before = reached
          call improve(self, model, rows, target, unknowns, done)
-         done = done .and. self%gmres%residual() <= max(tolerance*norm2(unknowns), round_off(self, right))
+         scale = norm2(unknowns)
+         error = self%gmres%residual()/scale
+         done = done .and. self%gmres%residual() <= max(tolerance*scale, round_off(self, right))
       end do
       fails = reached > max(significant*scale, 1.0e2_wp*target)
    end subroutine iterate
@@ -381,20 +390,22 @@ contains
       end if
    end subroutine try_zero
 
-   !> Set the residuals of pressures and motions to zero where they are far below the `target`, so that what does not change costs
-   !> nothing: without normal displacements by shear pressures are constant under a changing tangential load.
+   !> Set the residuals of pressures to zero if they are within the `target`, and those of motions without tangential displacements,
+   !> so that what does not change costs nothing: without normal displacements by shear pressures are constant under a changing
+   !> tangential load.
    pure subroutine drop_accurate(self, target, rows)
       class(krylov_system_type), intent(in) :: self
       real(wp), intent(in) :: target
       real(wp), intent(inout) :: rows(:)
-      real(wp), parameter :: far_below = 0.1_wp
       integer :: i, m
 
       m = size(self%contact)
-      if (.not. norm2(rows(:m)) <= far_below*target) return
+      if (.not. norm2(rows(:m)) <= target) return
       rows(:m) = 0.0_wp
-      do i = m + size(self%held) + 1, size(rows)
-         if (abs(rows(i)) <= far_below*target) rows(i) = 0.0_wp
+      do i = 1, size(self%free)
+         associate (row => rows(m + size(self%held) + i))
+            if (abs(row) <= target .and. .not. any(abs(self%tangential_arm(:, self%free(i))) > 0.0_wp)) row = 0.0_wp
+         end associate
       end do
    end subroutine drop_accurate
 

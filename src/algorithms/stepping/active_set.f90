@@ -10,7 +10,6 @@
 !> edge then converges quadratically, and the number of solves hardly depends on the number of nodes. Changing only the violating
 !> nodes would just halve the distance.
 module mfv_active_set
-   use, intrinsic :: iso_fortran_env, only: int64
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path, only: contact_path_type, segment_type
    use mfv_contact_state, only: contact_state_type
@@ -32,8 +31,6 @@ module mfv_active_set
    !> Relative error of tractions that intermediate solutions may have, until only a `few` nodes change.
    real(wp), parameter :: intermediate = 1.0e-6_wp
    integer, parameter :: few = 2
-   !> Most iterations of a solve that is cheap enough to be accurate.
-   integer, parameter :: cheap = 4
    !> Most nodes at fronts by which the statuses that the rates require may differ from those that the state does: where the slip at
    !> a front is only nearly as assumed, these alternate.
    integer, parameter :: at_fronts = 4
@@ -61,8 +58,7 @@ contains
       real(wp), dimension(size(path%state%status)) :: hold, ahead, before
       real(wp) :: allowed
       type(contact_state_type) :: consistent
-      logical :: possible, by_edges, rough, is_consistent
-      integer(int64) :: iterations
+      logical :: possible, by_edges, rough, accurate, is_consistent
       integer :: solve, first, looks
 
       found = .false.
@@ -81,14 +77,14 @@ contains
          if (.not. possible) return
          path%state%stuck_slip = hold
          path%system%allowed = merge(intermediate, allowed, rough)
-         iterations = path%system%iterations
          call solve_with_fronts(path, constraints, path%state%stuck_slip, ahead, fields, possible, held)
          path%system%allowed = allowed
          if (.not. possible) return
          call find_wanted(path, segment, fields, wanted, held)
          found = all(wanted == path%state%status)
          is_consistent = found
-         if (rough .and. (count(wanted /= path%state%status) <= few .or. path%system%iterations - iterations <= cheap)) then
+         accurate = .not. rough .or. path%system%tolerance <= max(round_off, allowed)
+         if (.not. accurate .and. count(wanted /= path%state%status) <= few) then
             rough = .false.
             first = solve + 1
             if (found) cycle
@@ -111,7 +107,7 @@ contains
             if (all(wanted == path%state%status)) return
             found = .false.
          end if
-         if (present(held) .and. .not. rough .and. is_consistent .and. &
+         if (present(held) .and. accurate .and. is_consistent .and. &
              count(wanted /= path%state%status) <= at_fronts) call keep(path, fields, consistent)
          if (by_edges) call move_edges(path%state%status, wanted, held)
          if (found .and. is_among(wanted, tried(:, :solve))) then
