@@ -41,18 +41,24 @@ contains
    pure type(periodic_images_type) function new_periodic_images(period, from, to, first, last) result(self)
       real(wp), intent(in) :: period, from(:), to(:)
       complex(wp), intent(in) :: first(:), last(:)
-      real(wp) :: point(points), weight(points), place
+      !> Elements up to this part of the period need fewer points: the highest powers of z that matter there are about 20.
+      real(wp), parameter :: short = 0.005_wp
+      integer, parameter :: fewer_points = 4
+      real(wp) :: point(points, 2), weight(points, 2), place
       complex(wp) :: moment(0:2*terms - 1, 2), part(2), turn, power(2)
       real(wp) :: binomial(0:2*terms - 1), a
-      integer :: i, j, k, element
+      integer :: i, j, k, element, rule
 
       self%period = period
-      call gauss_points(0.0_wp, 1.0_wp, point, weight)
+      call gauss_points(0.0_wp, 1.0_wp, point(:, 1), weight(:, 1))
+      call gauss_points(0.0_wp, 1.0_wp, point(:fewer_points, 2), weight(:fewer_points, 2))
       moment = 0.0_wp
       do element = 1, size(from)
-         do i = 1, points
-            place = (from(element) + point(i)*(to(element) - from(element)))/period
-            part(1) = (first(element) + point(i)*(last(element) - first(element)))*weight(i)*(to(element) - from(element))
+         rule = merge(2, 1, to(element) - from(element) <= short*period)
+         do i = 1, merge(fewer_points, points, rule == 2)
+            place = (from(element) + point(i, rule)*(to(element) - from(element)))/period
+            part(1) = (first(element) + point(i, rule)*(last(element) - first(element)))*weight(i, rule) &
+                      *(to(element) - from(element))
             part(2) = aimag(part(1))
             turn = exp(cmplx(0.0_wp, 2.0_wp*pi*place, wp))
             power = part

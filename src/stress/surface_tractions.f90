@@ -10,6 +10,7 @@
 module mfv_surface_tractions
    use mfv_edge_solutions, only: discrete_over_exact, graded_solution_type, least_power, most_power, new_graded_solution, &
                                  find_solved_distance
+   use mfv_element_tree, only: last_not_above
    use mfv_kinds, only: pi, wp
    use mfv_lapack, only: dgesv
    use mfv_near_field, only: near_field_type
@@ -107,8 +108,7 @@ contains
       logical, allocatable :: sharp(:, :)
       integer, allocatable :: owner(:)
       integer, parameter :: fewest_in_zone = 60
-      integer, allocatable :: nodes(:)
-      logical, allocatable :: done(:)
+      integer, allocatable :: nodes(:), last(:)
       type(traction_elements_type), allocatable :: parts(:)
       integer :: fewest, i, j, k, number
 
@@ -117,16 +117,19 @@ contains
       patch%nothing = certified*max(maxval(abs(pressure)), maxval(abs(shear)))
       call assign_nodes(arc, width, max(abs(pressure), abs(shear)) > patch%nothing, zones, edges, sharp, owner)
       fewest = max(zones%fewest_elements/max(size(edges, 2), 1), min(zones%fewest_elements, fewest_in_zone))
-      allocate (done(size(edges, 2)), source=.false.)
+      allocate (last(size(edges, 2)), source=0)
+      do j = 1, size(arc)
+         if (owner(j) > 0) last(owner(j)) = j
+      end do
       allocate (parts(size(edges, 2)))
       number = 0
       do j = 1, size(arc)
          ! Each patch at its first node: from left to right.
          i = owner(j)
          if (i == 0) cycle
-         if (done(i)) cycle
-         done(i) = .true.
-         nodes = pack([(k, k=1, size(arc))], owner == i)
+         if (last(i) == 0) cycle
+         nodes = pack([(k, k=j, last(i))], owner(j:last(i)) == i)
+         last(i) = 0
          patch%arc = arc(nodes)
          patch%width = width(nodes)
          patch%pressure = pressure(nodes)
@@ -189,18 +192,19 @@ contains
       real(wp), allocatable, intent(out) :: edges(:, :)
       logical, allocatable, intent(out) :: sharp(:, :)
       integer, allocatable, intent(out) :: owner(:)
+      real(wp), allocatable :: left(:)
       real(wp) :: distance
       integer :: i, nearest
 
       edges = zones%contact
       sharp = zones%sharp
+      left = zones%contact(1, :)
       allocate (owner(size(arc)), source=0)
       do i = 1, size(arc)
          if (.not. loaded(i)) cycle
-         nearest = 0
-         if (size(edges, 2) > 0) nearest = minloc(max(edges(1, :) - arc(i), arc(i) - edges(2, :)), dim=1)
+         nearest = nearest_zone(arc(i))
          distance = huge(1.0_wp)
-         if (nearest > 0) distance = max(edges(1, nearest) - arc(i), arc(i) - edges(2, nearest))
+         if (nearest > 0) distance = away(nearest)
          if (distance > 0.75_wp*width(i) .or. (distance > 0.5_wp*width(i) .and. is_apart())) then
             edges = reshape([edges, arc(i) - 0.5_wp*width(i), arc(i) + 0.5_wp*width(i)], [2, size(edges, 2) + 1])
             sharp = reshape([sharp, .false., .false.], [2, size(edges, 2)])
@@ -212,6 +216,30 @@ contains
       end do
 
    contains
+
+      !> The nearest of the given zones, which are ascending, and the last one formed; 0: there is none.
+      pure integer function nearest_zone(x) result(nearest)
+         real(wp), intent(in) :: x
+         integer :: candidates(3), k
+
+         k = last_not_above(left, x)
+         candidates = [k, k + 1, size(edges, 2)]
+         nearest = 0
+         do k = 1, size(candidates)
+            if (candidates(k) < 1 .or. (candidates(k) > size(left) .and. k < 3) .or. candidates(k) > size(edges, 2)) cycle
+            if (nearest > 0) then
+               if (away(candidates(k)) >= away(nearest)) cycle
+            end if
+            nearest = candidates(k)
+         end do
+      end function nearest_zone
+
+      !> Distance of the node from a zone, negative inside.
+      pure real(wp) function away(zone)
+         integer, intent(in) :: zone
+
+         away = max(edges(1, zone) - arc(i), arc(i) - edges(2, zone))
+      end function away
 
       !> Whether the next node towards the nearest zone has no load.
       pure logical function is_apart()

@@ -286,7 +286,7 @@ contains
       logical, intent(in) :: upper
       real(wp), intent(out) :: part
       integer, intent(out) :: points
-      integer, allocatable :: left(:)
+      integer, allocatable :: left(:), in_interval(:)
       real(wp), allocatable :: fraction(:), height(:), gap(:)
       logical, allocatable :: touching(:)
       real(wp) :: peak
@@ -312,7 +312,11 @@ contains
             height = max(-height - gap, 0.0_wp)
          end where
          part = maxval(pressure_of_wave(model%scene%modulus(), height, model%width(left)))/peak
-         points = maxval([(count(left == left(i)), i=1, size(left))], mask=height > 0.0_wp)
+         allocate (in_interval(maxval(left)), source=0)
+         do i = 1, size(left)
+            in_interval(left(i)) = in_interval(left(i)) + 1
+         end do
+         points = maxval(in_interval(left), mask=height > 0.0_wp)
       end associate
    end subroutine undersampling
 

@@ -374,8 +374,10 @@ contains
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       type(patch_type), intent(in) :: patches(:)
+      real(wp) :: largest
       integer :: i
 
+      largest = maxval(state%fields%pressure)
       rises_at_end = .false.
       do i = 1, size(patches)
          rises_at_end = rises_at_end .or. rises(patches(i)%left, patches(i)%first, -1) .or. &
@@ -390,7 +392,7 @@ contains
          real(wp), parameter :: growth = 3.0_wp
 
          associate (beyond => edge + side*visible*model%width(node))
-            rises = growth*state%fields%pressure(node) > maxval(state%fields%pressure) .and. &
+            rises = growth*state%fields%pressure(node) > largest .and. &
                     is_beyond_surface(model, beyond) .and. .not. is_beyond_corner(model, beyond) .and. &
                     .not. model%scene%repeats_beyond(beyond)
          end associate

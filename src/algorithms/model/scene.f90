@@ -3,6 +3,7 @@ module mfv_scene
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
    use mfv_body, only: body_type
    use mfv_compliance, only: coupling_full
+   use mfv_element_tree, only: last_not_above
    use mfv_near_field, only: near_field_type, pair_of
    use mfv_friction, only: friction_type
    use mfv_interior, only: has_interior, interior_type, new_interior
@@ -657,9 +658,13 @@ contains
       class(scene_type), intent(in) :: self
       real(wp), intent(in) :: arc(:), width(:), edge
       integer, intent(in) :: side
-      integer :: node
+      integer :: before, node
 
-      node = minloc(abs(arc + side*0.5_wp*width - edge), dim=1)
+      ! The nearest end of an interval is that of one of the nodes next to the edge.
+      before = max(1, last_not_above(arc, edge) - 1)
+      associate (near => before, beyond => min(before + 3, size(arc)))
+         node = near - 1 + minloc(abs(arc(near:beyond) + side*0.5_wp*width(near:beyond) - edge), dim=1)
+      end associate
       associate (tiny_step => side*visible*width(node))
          ends_with_body = self%touchable(edge - tiny_step) .and. .not. self%touchable(edge + tiny_step)
          if (abs(arc(node) + side*0.5_wp*width(node) - edge) <= abs(tiny_step)) &
