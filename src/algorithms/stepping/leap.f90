@@ -43,8 +43,8 @@ module mfv_leap
    !> the first length of the interval; and shorter than `least_growth` of what is done before it.
    real(wp), parameter :: shortest = 0.2_wp, least_growth = 0.05_wp
    !> Most increments of an interval; those of an exact one, for the history: one for a number of nodes in contact whose events cost
-   !> more.
-   integer, parameter :: most_increments = 64, most_recorded = 8, nodes_a_record = 32
+   !> more, and so few that all together have at most a number of nodes.
+   integer, parameter :: most_increments = 64, most_recorded = 8, nodes_a_record = 32, nodes_recorded = 32768
    !> Linear solves of event stepping per change of status. Less than one, since event stepping can update the inverse from solve
    !> to solve, and a large increment cannot.
    real(wp), parameter :: solves_per_change = 0.6_wp
@@ -314,7 +314,9 @@ contains
       call find_stiffness(path, interval, start)
       accepted = is_exact(path, interval)
       increments = 1
-      if (accepted .and. path%record_events) increments = max(1, min(most_recorded, path%state%contact_nodes()/nodes_a_record))
+      associate (nodes => max(path%state%contact_nodes(), 1))
+         if (accepted .and. path%record_events) increments = max(1, min(most_recorded, nodes/nodes_a_record, nodes_recorded/nodes))
+      end associate
       call make_chain(path, interval, increments, start, chain)
       accepted = accepted .and. chain%found
       if (.not. chain%found) return
