@@ -415,7 +415,8 @@ contains
 
    !> A first guess of the slipping nodes at a fraction of the interval: they slip in the direction of the tangential load. Under
    !> constant pressures and tangential force control their number is that of Mindlin's contact of cylinders: the edge of the stick
-   !> zone is where the pressure is sqrt(Q/(mu P)) of the largest; after a reversal, with half the change in place of Q. Only nodes
+   !> zone is where the pressure is sqrt(Q/(mu P)) of the largest in its patch; after a reversal, with half the change in place of
+   !> Q. Only nodes
    !> stick that hold from the start (`held`), if these are known. `by_pressure`: whether their number follows from the pressures.
    subroutine guess_slip(path, interval, fraction, by_pressure, held)
       class(contact_path_type), intent(inout) :: path
@@ -444,9 +445,27 @@ contains
          force = max(sign(1.0_wp, load%rate)*force, 0.0_wp)
          can_stick = .true.
          if (present(held)) can_stick = held
-         where (can_stick .and. fields%pressure > sqrt(force/sliding_limit)*maxval(fields%pressure)) status = node_stick
+         where (can_stick .and. fields%pressure > sqrt(force/sliding_limit)*largest_of_patches(fields%pressure)) status = node_stick
       end associate
       call path%set_status(in_contact(path%state%status), status)
    end subroutine guess_slip
+
+   !> The largest pressure of the patch of each node, shape (nodes); a patch has consecutive nodes with a pressure.
+   pure function largest_of_patches(pressure) result(largest)
+      real(wp), intent(in) :: pressure(:)
+      real(wp) :: largest(size(pressure))
+      integer :: first, last
+
+      first = 1
+      do while (first <= size(pressure))
+         last = first
+         do while (last < size(pressure))
+            if (.not. (pressure(first) > 0.0_wp .and. pressure(last + 1) > 0.0_wp)) exit
+            last = last + 1
+         end do
+         largest(first:last) = maxval(pressure(first:last))
+         first = last + 1
+      end do
+   end function largest_of_patches
 
 end module mfv_chain
