@@ -27,6 +27,7 @@ module mfv_element_tree
       !> Middles and radii of the groups; moments of sigma and of its imaginary part over radius^k, shapes (0:most_moments, groups).
       complex(wp), allocatable :: middle(:), moments(:, :), shear_moments(:, :)
       real(wp), allocatable :: radius(:)
+      integer :: leaf_count = 0
    contains
       procedure :: find_distant
       procedure :: leaves
@@ -92,6 +93,7 @@ contains
       self%first = self%first(:groups)
       self%last = self%last(:groups)
       self%halves = self%halves(:groups)
+      self%leaf_count = count(self%halves == 0)
       allocate (self%middle(groups), self%radius(groups))
       allocate (self%moments(0:most_moments, groups), self%shear_moments(0:most_moments, groups))
    end subroutine divide
@@ -217,7 +219,7 @@ contains
    pure integer function leaves(self)
       class(element_tree_type), intent(in) :: self
 
-      leaves = count(self%halves == 0)
+      leaves = self%leaf_count
    end function leaves
 
    !> Integrals over the elements distant from both points z, on one side of the surface: of sigma/(s - z1) ds, its divided

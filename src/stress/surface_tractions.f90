@@ -107,7 +107,7 @@ contains
       real(wp), allocatable :: edges(:, :)
       logical, allocatable :: sharp(:, :)
       integer, allocatable :: owner(:)
-      integer, parameter :: fewest_in_zone = 60
+      integer, parameter :: fewest_in_zone = 24
       integer, allocatable :: nodes(:), last(:)
       type(traction_elements_type), allocatable :: parts(:)
       integer :: fewest, i, j, k, number
