@@ -12,7 +12,6 @@
 module mfv_toeplitz_inverse
    use mfv_fourier, only: back_transform, backward, complex_transform, fast_length, forward, real_transform
    use mfv_kinds, only: wp
-   use mfv_lapack, only: ddot
    implicit none
    private
    public :: toeplitz_inverse_type
@@ -32,7 +31,6 @@ module mfv_toeplitz_inverse
       procedure :: set_order
       procedure :: apply
       procedure :: copy_order
-      procedure :: entries
    end type toeplitz_inverse_type
 
 contains
@@ -74,29 +72,6 @@ contains
       self%error = other%error
       self%length = 0
    end subroutine copy_order
-
-   !> Entries of the inverse for rows and columns `places`, ascending; shape (places, places). Along a diagonal the formula is a sum
-   !> of products.
-   subroutine entries(self, places, matrix)
-      class(toeplitz_inverse_type), intent(in) :: self
-      integer, intent(in) :: places(:)
-      real(wp), intent(out) :: matrix(:, :)
-      integer :: count, distance, i, j
-
-      associate (a => self%predictor, m => self%order)
-         do j = 1, size(places)
-            do i = j, size(places)
-               distance = places(i) - places(j)
-               ! The inverse is symmetric about both diagonals.
-               count = min(places(j), m + 1 - places(i))
-               matrix(i, j) = ddot(count, a(distance + 1), 1, a(1), 1)
-               if (count > 1) matrix(i, j) = matrix(i, j) - ddot(count - 1, a(m + 2 - count), 1, a(m + 2 - count - distance), 1)
-               matrix(i, j) = matrix(i, j)/self%error
-               matrix(j, i) = matrix(i, j)
-            end do
-         end do
-      end associate
-   end subroutine entries
 
    !> Reserve storage for a predictor of `order` with a margin; its values are retained.
    subroutine make_room(self, order)
