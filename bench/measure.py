@@ -26,10 +26,11 @@ import accuracy
 import circle
 import events
 import peer
+import rough
 import targets
 from harness import CERTIFICATE, CERTIFICATE_DIRECT, Bench
 
-MODULES = {"targets": targets, "peer": peer, "events": events, "accuracy": accuracy, "circle": circle}
+MODULES = {"targets": targets, "peer": peer, "events": events, "accuracy": accuracy, "circle": circle, "rough": rough}
 HEAD = """# Performance
 
 Written by `bench/measure.py`; do not edit. Counts do not depend on the machine. Times are of one machine ({machine}) with one thread, the least
@@ -79,7 +80,7 @@ def page(results: dict[str, Any], pictures: Path) -> str:
     parts = [head(results)]
     if "targets" in results:
         parts.append(targets.section(results["targets"], results.get("long")))
-    for name in ("peer", "events", "accuracy", "circle"):
+    for name in ("peer", "rough", "events", "accuracy", "circle"):
         if name in results:
             parts.append(MODULES[name].section(results[name], pictures))
     return "\n".join(part.strip("\n") + "\n" for part in parts)

@@ -63,6 +63,7 @@ __all__ = [
     "run",
     "stress",
     "study",
+    "surfaces",
 ]
 
 #: Where the names are. Each module is loaded when one of its names is first used: none has to wait for what it does not need.
@@ -92,6 +93,7 @@ _ON_FIRST_USE = (
     "reference",
     "report",
     "stress",
+    "surfaces",
     "template",
 )
 

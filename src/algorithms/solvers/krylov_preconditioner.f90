@@ -31,7 +31,7 @@ module mfv_krylov_preconditioner
       !> have beyond these.
       real(wp) :: shear_ratio = 1.0_wp
       real(wp), public :: constant = 0.0_wp, shear_constant = 0.0_wp
-      logical :: is_logarithmic = .false.
+      logical :: is_logarithmic = .false., has_shear = .false.
       !> (Both allocatable: otherwise gfortran 12 does not free the components of the second.)
       type(block_type), allocatable :: contact, held
       !> Softness of the held nodes where it is negative, else 0, shape (held).
@@ -48,7 +48,7 @@ module mfv_krylov_preconditioner
 
 contains
 
-   !> Prepare for a compliance, whose number of nodes may have changed. `unit`: of the entries of the blocks, length^3/force.
+   !> Prepare for a compliance, whose number of nodes may have changed, or whose blocks with the first step with friction. `unit`: of the entries of the blocks, length^3/force.
    subroutine prepare(self, compliance, unit)
       class(krylov_preconditioner_type), intent(inout) :: self
       class(compliance_type), intent(in) :: compliance
@@ -57,8 +57,9 @@ contains
       real(wp) :: near(1, 2), factor, least
 
       if (allocated(self%kernel)) then
-         if (2*compliance%nodes <= size(self%kernel)) return
+         if (2*compliance%nodes <= size(self%kernel) .and. (self%has_shear .eqv. compliance%has_block(block_ut))) return
       end if
+      self%has_shear = compliance%has_block(block_ut)
       n = compliance%nodes
       middle = (n + 1)/2
       near = 0.0_wp

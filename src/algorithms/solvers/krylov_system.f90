@@ -358,7 +358,7 @@ contains
          scale = norm2(unknowns)
          if (.not. scale > 0.0_wp) scale = reached
          target = max(strictness(self)*tolerance*scale, round_off(self, right))
-         error = reached/scale
+         error = reached/max(scale, tiny(1.0_wp))
          if (.not. model%compliance%has_block(block_wt)) call drop_accurate(self, target, rows)
          ! A guess within the tolerance is not changed.
          if (reached <= merge(near_enough, 1.0_wp, pass == 1)*target) return
@@ -366,19 +366,20 @@ contains
          before = reached
          call improve(self, model, rows, target, unknowns, done)
          scale = norm2(unknowns)
-         error = self%gmres%residual()/scale
+         error = self%gmres%residual()/max(scale, tiny(1.0_wp))
          done = done .and. self%gmres%residual() <= max(strictness(self)*tolerance*scale, round_off(self, right))
       end do
       fails = reached > max(significant*scale, 1.0e2_wp*target)
    end subroutine iterate
 
-   !> Part of the tolerance that the residual may have: where friction decreases with slip, the rows can be nearly singular, and the
-   !> error of the unknowns is larger.
+   !> Part of the tolerance that the residual may have. Where the inverses are not exact, it is not the error of the unknowns; where
+   !> friction decreases with slip, the rows can be nearly singular, and the error is larger.
    pure real(wp) function strictness(self)
       class(krylov_system_type), intent(in) :: self
-      real(wp), parameter :: of_weakening = 0.01_wp
+      real(wp), parameter :: of_approximation = 0.1_wp, of_weakening = 0.01_wp
 
-      strictness = merge(of_weakening, 1.0_wp, any(self%softness < 0.0_wp))
+      strictness = merge(1.0_wp, of_approximation, self%preconditioner%is_exact())
+      if (any(self%softness < 0.0_wp)) strictness = of_weakening
    end function strictness
 
    !> Start from zero if the residual, `reached`, is then smaller. `rows`: the preconditioned residual.

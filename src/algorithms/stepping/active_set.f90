@@ -424,8 +424,8 @@ contains
       slipped = 0.0_wp
       if (path%model%tangential) slipped = fields%slip() - path%state%stuck_slip
       ! An iterative solution misses the equalities; inequalities are not more accurate.
-      motion = max(motion, missed*maxval(abs(gap), mask=in_contact(path%state%status)), &
-                   missed*maxval(abs(slipped), mask=path%state%status == node_stick))
+      motion = max(motion, missed*max(0.0_wp, maxval(abs(gap), mask=in_contact(path%state%status)), &
+                                      maxval(abs(slipped), mask=path%state%status == node_stick)))
       if (present(held)) slipped = merge(slipped, 0.0_wp, held)
       closed = node_frictionless
       if (segment%friction .and. path%model%tangential) closed = node_stick
