@@ -26,7 +26,7 @@ POINTS_OF_ROWS, QUICK = (1024, 4096, 16384, 65536, 131072), (1024, 4096)
 #: Resolution: waves in the period, and points on the shortest.
 WAVES, FINER = 128, (4, 8, 16, 32, 64)
 #: Tolerance of Tamaas, and the longest that it may take, seconds.
-TOLERANCE, LONGEST_RUN = 1e-8, 600.0
+TOLERANCE, LONGEST_RUN = 1e-8, 200.0
 SCRIPT = """
 import sys, time, numpy as np, tamaas as tm
 tm.set_log_level(tm.LogLevel.error)
@@ -170,7 +170,9 @@ def section(data: dict[str, Any], _pictures: Path) -> str:
     points = [row["points"] for row in rows]
     exponents = [slope(points, [row[kind]["seconds"] for row in rows])[0] for kind in ("press", "cycle")]
     finest = data["fine"][-1]["values"]
-    coupled = [f"{row['points']:,} points {duration(row['seconds'])}, {row['values']['events']:.0f} events" for row in data["coupled"]]
+    coupled = [
+        f"{row['points']:,} points {duration(row['seconds'])}, {row['values']['events']:.0f} events" for row in data["coupled"]
+    ]
     return TEXT.format(
         hurst=HURST,
         points=POINTS,

@@ -126,7 +126,9 @@ def roughness(x: ArrayLike, height: ArrayLike) -> Roughness:
 def contact(result: Result) -> RoughContact:
     """The contact in every state of `result.steps`. Raises ValueError for a result without any."""
     if not result.steps:
-        raise ValueError("the result has no states in steps: it was written with states='none' in &output, or ended before the first")
+        raise ValueError(
+            "the result has no states in steps: it was written with states='none' in &output, or ended before the first"
+        )
     states = result.steps
     lengths = np.array([float(state.contact_length) for state in states])
     forces = np.array([float(state.normal_force) for state in states])

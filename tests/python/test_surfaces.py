@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 import numpy as np
@@ -63,7 +64,10 @@ def test_parameters_of_a_wave() -> None:
 
 
 def test_contact_of_all_states() -> None:
-    steps = [Step(normal_force=force, friction=False) for force in (0.05, 0.1, 0.2)] + [Step(force_ratio=0.5), Step(force_ratio=0.9)]
+    steps = [Step(normal_force=force, friction=False) for force in (0.05, 0.1, 0.2)] + [
+        Step(force_ratio=0.5),
+        Step(force_ratio=0.9),
+    ]
     result = pressed(surface(), *steps)
     found = surfaces.contact(result)
     assert list(found.step) == [1, 2, 3, 4, 5]
@@ -95,20 +99,31 @@ def test_uncoupled_shear_by_superposition() -> None:
     assert whole.summary.events == 0
 
 
-@pytest.mark.parametrize("coupling", ["none", "full"])
-def test_random_surfaces_against_events(coupling: str) -> None:
+def check_against_events(points: int, seed: int, coupling: str) -> None:
     """States after shear and a cycle, exactly as by events."""
-    for seed in range(4):
-        profile = surface(320, seed=seed)
-        lower, upper = Body.half_plane(youngs_modulus=1.0, poisson_ratio=0.3), Body.profile(profile.x, profile.height, rigid=True)
-        steps = [Step(normal_force=0.1), Step(force_ratio=0.6), Step(force_ratio=-0.6, cycles=1)]
-        scene = Scene(lower, upper, mesh=Mesh(nodes=320, period=LENGTH), friction=Friction.coulomb(0.3), steps=steps, coupling=coupling)
-        found = mfv.run(scene)
-        scene.solver = mfv.Solver(stepping="event", linear_solver="reduced")
-        expected = mfv.run(scene)
-        assert np.array_equal(found.state.status, expected.state.status)
-        assert np.abs(found.state.shear - expected.state.shear).max() < 1e-9 * expected.state.pressure.max()
-        assert found.summary.dissipation == pytest.approx(expected.summary.dissipation, rel=1e-8)
+    profile = surface(points, seed=seed, cut_off=8 * LENGTH / points)
+    lower, upper = Body.half_plane(youngs_modulus=1.0, poisson_ratio=0.3), Body.profile(profile.x, profile.height, rigid=True)
+    steps = [Step(normal_force=0.1), Step(force_ratio=0.6), Step(force_ratio=-0.6, cycles=1)]
+    mesh = Mesh(nodes=points, period=LENGTH)
+    scene = Scene(lower, upper, mesh=mesh, friction=Friction.coulomb(0.3), steps=steps, coupling=coupling)
+    found = mfv.run(scene)
+    scene.solver = mfv.Solver(stepping="event", linear_solver="reduced")
+    expected = mfv.run(scene)
+    assert np.array_equal(found.state.status, expected.state.status)
+    assert np.abs(found.state.shear - expected.state.shear).max() < 1e-9 * expected.state.pressure.max()
+    assert found.summary.dissipation == pytest.approx(expected.summary.dissipation, rel=1e-8)
+
+
+@pytest.mark.parametrize("coupling", ["none", "full"])
+@pytest.mark.parametrize("seed", range(4))
+def test_random_surfaces_against_events(seed: int, coupling: str) -> None:
+    check_against_events(320, seed, coupling)
+
+
+@pytest.mark.skipif("MFV_DEEP" not in os.environ, reason="takes minutes: MFV_DEEP=1")
+@pytest.mark.parametrize("seed", range(30))
+def test_many_surfaces_against_events(seed: int) -> None:
+    check_against_events(2048, seed, "none")
 
 
 def test_mean_and_bar() -> None:

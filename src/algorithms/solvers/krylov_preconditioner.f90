@@ -48,7 +48,8 @@ module mfv_krylov_preconditioner
 
 contains
 
-   !> Prepare for a compliance, whose number of nodes may have changed, or whose blocks with the first step with friction. `unit`: of the entries of the blocks, length^3/force.
+   !> Prepare for a compliance, whose number of nodes may have changed, or its blocks, with the first step with friction. `unit`: of
+   !> the entries of the blocks, length^3/force.
    subroutine prepare(self, compliance, unit)
       class(krylov_preconditioner_type), intent(inout) :: self
       class(compliance_type), intent(in) :: compliance
