@@ -42,16 +42,17 @@ contains
    !> Statuses and fields at the fraction `done` of the segment. The first guess is the statuses of `path` and `fields`; the start
    !> is the fields of `path`. `held`: nodes that hold from the start, while others stick as the edges of their zones move
    !> (mfv_sticking_front), shape (nodes); if absent, all nodes that stick hold at the slip of the start or of first contact.
+   !> `in_proportion`: whether zones have grown in proportion to their size (mfv_sticking_front); needed with `held`.
    !> `found`: whether there are any. `path` then has the statuses, and in stuck_slip the slip from which that of the increment
    !> counts; its fields remain those of the start. If not found, the statuses are invalid: the system is singular, the statuses
    !> cycle (but for a few nodes at fronts), nothing balances a prescribed force, or every node slips.
-   subroutine find_statuses(path, segment, done, fields, found, held)
+   subroutine find_statuses(path, segment, done, fields, found, held, in_proportion)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: done
       type(contact_fields_type), intent(inout) :: fields
       logical, intent(out) :: found
-      logical, intent(in), optional :: held(:)
+      logical, intent(in), optional :: held(:), in_proportion
       type(constraints_type) :: constraints
       integer, dimension(size(path%state%status)) :: wanted
       integer :: tried(size(path%state%status), most_solves)
@@ -77,7 +78,7 @@ contains
          if (.not. possible) return
          path%state%stuck_slip = hold
          path%system%allowed = merge(intermediate, allowed, rough)
-         call solve_with_fronts(path, constraints, path%state%stuck_slip, ahead, fields, possible, held)
+         call solve_with_fronts(path, constraints, path%state%stuck_slip, ahead, fields, possible, held, in_proportion)
          path%system%allowed = allowed
          if (.not. possible) return
          call find_wanted(path, segment, fields, wanted, held)
@@ -147,14 +148,14 @@ contains
    !> shape (nodes); that of nodes at which an edge has passed follows from the solution, if `held` is present (see find_statuses).
    !> `ahead`: from find_returning.
    !> `solved`: false if the system is singular or the slip of the edges is not found.
-   subroutine solve_with_fronts(path, constraints, hold, ahead, fields, solved, held)
+   subroutine solve_with_fronts(path, constraints, hold, ahead, fields, solved, held, in_proportion)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(inout) :: constraints
       real(wp), intent(inout) :: hold(:)
       real(wp), intent(in) :: ahead(:)
       type(contact_fields_type), intent(inout) :: fields
       logical, intent(out) :: solved
-      logical, intent(in), optional :: held(:)
+      logical, intent(in), optional :: held(:), in_proportion
       integer, parameter :: most_passes = 20
       type(fronts_type) :: fronts
       type(contact_fields_type) :: change(2)
@@ -166,7 +167,7 @@ contains
       if (present(held)) then
          associate (start => path%state%fields)
             call find_fronts(path%state%status, held,.not. start%pressure > 0.0_wp, hold, start, path%model%gap(start), &
-                             ahead, fronts)
+                             ahead, in_proportion, fronts)
          end associate
          zones = count(any(fronts%outer > 0, dim=1))
       end if

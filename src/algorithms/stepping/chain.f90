@@ -101,7 +101,8 @@ contains
          if (present(coarser) .and. .not. by_pressure) call guess_from(path, coarser, start, chain, i, known)
          if (chain%fronts .and. .not. (chain%begins .or. known)) &
             call guess_as_before(path, interval, i, increments, chain%after(i), known)
-         call find_statuses_on_mesh(path, interval, reached(chain, i), chain%after(i), chain%found, chain%exceeded, held)
+         call find_statuses_on_mesh(path, interval, reached(chain, i), chain%after(i), chain%found, chain%exceeded, held, &
+                                    chain%begins)
          if (.not. chain%found) exit
          if (chain%fronts) chain%sticks_anew = chain%sticks_anew .or. any(path%state%status == node_stick .and. .not. held)
          chain%changes = chain%changes + count_changes(status, path%state%status)
@@ -281,7 +282,7 @@ contains
          if (.not. known) &
             call path%set_status(spread(.true., 1, size(left%status)), statuses_between(left%status, right%status))
          call find_statuses_on_mesh(path, interval, fraction, sample%fields, found, exceeded, &
-                                    holding_before(chain, start, increment))
+                                    holding_before(chain, start, increment), chain%begins)
          if (.not. found) return
          sample%status = path%state%status
          path%state%fields = sample%fields

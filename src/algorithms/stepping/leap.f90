@@ -461,7 +461,8 @@ contains
       start = path%state
       path%system%allowed = 0.0_wp
       path%state = chain%before(chain%increments)
-      call find_statuses_on_mesh(path, interval, 1.0_wp, chain%after(chain%increments), found, chain%exceeded, chain%held)
+      call find_statuses_on_mesh(path, interval, 1.0_wp, chain%after(chain%increments), found, chain%exceeded, chain%held, &
+                                 chain%begins)
       chain%found = found
       chain%before(chain%increments)%status = path%state%status
       chain%before(chain%increments)%stuck_slip = path%state%stuck_slip

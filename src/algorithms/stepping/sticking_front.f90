@@ -7,7 +7,7 @@
 !> So it is taken where the zone grows within the nearer part of what slipped at the start. Beyond that S is the parabola through E
 !> and two nodes that have held: the outermost one, and one as far further in as E is further out. A contact that begins within the
 !> increment grows in proportion to its shape (exactly so for a power of x, under loads that grow in proportion): there S follows
-!> the gap before the increment.
+!> the gap before the increment. If it has begun in an increment before and still does, S is that parabola everywhere.
 !>
 !> S depends on the slip of E, an unknown of the same increment: slip(E) = s + sum of r theta over the slips theta that are assumed
 !> for the outer nodes, r the responses to unit slips. The fronts to the left and to the right of all stick zones are two groups,
@@ -46,11 +46,13 @@ contains
 
    !> The fronts for statuses at the end of an increment, shape (nodes). `held`: nodes that hold from its start, at the slip `hold`
    !> (length); `start`: the fields there; `open`: nodes that were open there; `gap`: the gaps there, length; `ahead`: how far nodes
-   !> slip after the end of the increment until they stick, length; all shape (nodes).
-   subroutine find_fronts(status, held, open, hold, start, gap, ahead, fronts)
+   !> slip after the end of the increment until they stick, length; all shape (nodes). `in_proportion`: whether zones have grown in
+   !> proportion to their size, since the contact began.
+   subroutine find_fronts(status, held, open, hold, start, gap, ahead, in_proportion, fronts)
       integer, intent(in) :: status(:)
       logical, intent(in) :: held(:), open (:)
       real(wp), intent(in) :: hold(:), gap(:), ahead(:)
+      logical, intent(in) :: in_proportion
       type(contact_fields_type), intent(in) :: start
       type(fronts_type), intent(out) :: fronts
       type(zone_type), allocatable :: zones(:)
@@ -107,6 +109,7 @@ contains
             width = width + 1
          end do
          power = min(max((far*width - abs(outer - near))/((far - near_edge)*max(width, 1)), 0.0_wp), 1.0_wp)
+         if (in_proportion) power = 0.0_wp
          slip = start%slip()
          call find_parabola(from, to, outer, near, near - min(abs(outer - near), reach - reach/2)*outwards, base, weight)
          by_power = powers(from, to, near + 0.5_wp*outwards, outer)
