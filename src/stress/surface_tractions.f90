@@ -217,20 +217,19 @@ contains
 
    contains
 
-      !> The nearest of the given zones, which are ascending, and the last one formed; 0: there is none.
+      !> Number of the zone nearest to a place: one of the two given ones beside it (these are in ascending order), or the one
+      !> formed last; 0 if there is no zone yet.
       pure integer function nearest_zone(x) result(nearest)
          real(wp), intent(in) :: x
-         integer :: candidates(3), k
+         integer :: candidates(3), i, k
 
          k = last_not_above(left, x)
-         candidates = [k, k + 1, size(edges, 2)]
-         nearest = 0
-         do k = 1, size(candidates)
-            if (candidates(k) < 1 .or. (candidates(k) > size(left) .and. k < 3) .or. candidates(k) > size(edges, 2)) cycle
-            if (nearest > 0) then
-               if (away(candidates(k)) >= away(nearest)) cycle
-            end if
-            nearest = candidates(k)
+         candidates = [k, min(k + 1, size(edges, 2)), size(edges, 2)]
+         nearest = candidates(3)
+         do i = 1, size(candidates)
+            if (candidates(i) < 1) cycle
+            if (away(candidates(i)) < away(nearest) .or. (candidates(i) < nearest .and. &
+                                                          away(candidates(i)) <= away(nearest))) nearest = candidates(i)
          end do
       end function nearest_zone
 

@@ -357,7 +357,7 @@ contains
             call try_zero(self, model, right, unknowns, rows, reached)
          scale = norm2(unknowns)
          if (.not. scale > 0.0_wp) scale = reached
-         target = max(strictness(self)*tolerance*scale, round_off(self, right))
+         target = target_of(self, right, tolerance*scale)
          error = reached/max(scale, tiny(1.0_wp))
          if (.not. model%compliance%has_block(block_wt)) call drop_accurate(self, target, rows)
          ! A guess within the tolerance is not changed.
@@ -367,20 +367,24 @@ contains
          call improve(self, model, rows, target, unknowns, done)
          scale = norm2(unknowns)
          error = self%gmres%residual()/max(scale, tiny(1.0_wp))
-         done = done .and. self%gmres%residual() <= max(strictness(self)*tolerance*scale, round_off(self, right))
+         done = done .and. self%gmres%residual() <= target_of(self, right, tolerance*scale)
       end do
       fails = reached > max(significant*scale, 1.0e2_wp*target)
    end subroutine iterate
 
-   !> Part of the tolerance that the residual may have. Where the inverses are not exact, it is not the error of the unknowns; where
-   !> friction decreases with slip, the rows can be nearly singular, and the error is larger.
-   pure real(wp) function strictness(self)
+   !> The residual at which the error of the unknowns is about `error`, or their round-off. Where the inverses are not exact, the
+   !> residual is not the error; where friction decreases with slip, the rows can be nearly singular, and the error is larger.
+   real(wp) function target_of(self, right, error) result(target)
       class(krylov_system_type), intent(in) :: self
+      type(right_side_type), intent(in) :: right
+      real(wp), intent(in) :: error
       real(wp), parameter :: of_approximation = 0.1_wp, of_weakening = 0.01_wp
+      real(wp) :: part
 
-      strictness = merge(1.0_wp, of_approximation, self%preconditioner%is_exact())
-      if (any(self%softness < 0.0_wp)) strictness = of_weakening
-   end function strictness
+      part = merge(1.0_wp, of_approximation, self%preconditioner%is_exact())
+      if (any(self%softness < 0.0_wp)) part = of_weakening
+      target = max(part*error, round_off(self, right))
+   end function target_of
 
    !> Start from zero if the residual, `reached`, is then smaller. `rows`: the preconditioned residual.
    subroutine try_zero(self, model, right, unknowns, rows, reached)
