@@ -5,6 +5,7 @@ module mfv_observables
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
+   use mfv_edge_fields, only: edge_field_type, edge_fields_of, permanent_stick_length, steady_stick_length
    use mfv_kinds, only: pi, wp
    use mfv_load_extremes, only: candidate_tension, candidate_von_mises, extreme_type, load_extremes_type
    use mfv_motions, only: motions, motion_count => user_motions, motion_approach, motion_shift
@@ -17,28 +18,28 @@ module mfv_observables
    implicit none
    private
    public :: observable_count, observables, observable_place, observables_of, error_none, error_load, error_smooth, error_edges, &
-             error_stick, error_pressure, error_shear, error_local, error_place
+             error_stick, error_pressure, error_shear, error_local, error_place, error_edge_field
 
    !> How the discretisation error of an observable behaves: not estimated (counts, rows, and numbers with the relative errors of
    !> their factors); none where the load is prescribed; smooth; that of edges of the contact, of stick zones, of the peaks of
-   !> the tractions, of a stress that can be at an edge; that of a place.
+   !> the tractions, of a stress that can be at an edge; of fields at an edge; that of a place.
    integer, parameter :: error_none = 0, error_load = 1, error_smooth = 2, error_edges = 3, error_stick = 4, error_pressure = 5, &
-                         error_shear = 6, error_local = 7, error_place = 8
+                         error_shear = 6, error_local = 7, error_edge_field = 8, error_place = 9
 
    !> Name, as in tables and files; unit in terms of length and force (energies per unit thickness), or 1; behaviour of the
    !> discretisation error; meaning.
    type :: row_type
       character(len=36) :: name
-      character(len=14) :: unit
+      character(len=18) :: unit
       integer :: error
-      character(len=130) :: meaning
+      character(len=140) :: meaning
    end type row_type
 
    !> Extremes of a stretch of the load history, at the ends of its load segments.
    character(*), parameter :: over = ' over the last cycle; without cycles: over all rows or steps'
    character(*), parameter :: row_meaning = 'when it occurs: row of &history, turning point of the cycle, or step'
    !> Number and list of the observables.
-   integer, parameter :: observable_count = 89
+   integer, parameter :: observable_count = 105
    type(row_type), parameter :: observables(observable_count) = [ &
                                 row_type('normal_force', 'force/length', error_load, &
                                          'normal force P per unit thickness at the end'), &
@@ -174,7 +175,39 @@ module mfv_observables
                                          'with layers: largest shear traction at an interface of the upper body'//over), &
                                 row_type('largest_upper_interface_shear_x', 'length', error_place, 'where it is: x'), &
                                 row_type('largest_upper_interface_shear_y', 'length', error_none, 'where it is: y'), &
-                                row_type('largest_upper_interface_shear_row', '1', error_none, row_meaning)]
+                                row_type('largest_upper_interface_shear_row', '1', error_none, row_meaning), &
+                                row_type('left_normal_intensity', 'force/length^(5/2)', error_edge_field, &
+                                         'K_N at the left edge of the contact at the end: pressure K_N sqrt(s), distance s'), &
+                                row_type('left_shear_intensity', 'force/length^(3/2)', error_edge_field, &
+                                         'K_T there: shear if stuck, since the last turning point of the loads, K_T/sqrt(s)'), &
+                                row_type('left_slip_zone', 'length', error_stick, &
+                                         'width of the slip zone at the left edge at the end'), &
+                                row_type('left_asymptotic_slip_zone', 'length', error_edge_field, &
+                                         'the same by K_N and K_T alone'), &
+                                row_type('left_edge_reach', 'length', error_edge_field, &
+                                         'distance from it at which the pressure differs from K_N sqrt(s) by a tenth'), &
+                                row_type('left_edge_exponent', '1', error_none, &
+                                         'exponent of s in the pressure there: 1/2; corners -1/2; others by coupled slip'), &
+                                row_type('left_corner_intensity', 'force/length^(3/2)', error_edge_field, &
+                                         'intensity of the pressure at a corner at the left end, K/sqrt(s)'), &
+                                row_type('right_normal_intensity', 'force/length^(5/2)', error_edge_field, &
+                                         'K_N at the right edge of the contact at the end: pressure K_N sqrt(s), distance s'), &
+                                row_type('right_shear_intensity', 'force/length^(3/2)', error_edge_field, &
+                                         'K_T there: shear if stuck, since the last turning point of the loads, K_T/sqrt(s)'), &
+                                row_type('right_slip_zone', 'length', error_stick, &
+                                         'width of the slip zone at the right edge at the end'), &
+                                row_type('right_asymptotic_slip_zone', 'length', error_edge_field, &
+                                         'the same by K_N and K_T alone'), &
+                                row_type('right_edge_reach', 'length', error_edge_field, &
+                                         'distance from it at which the pressure differs from K_N sqrt(s) by a tenth'), &
+                                row_type('right_edge_exponent', '1', error_none, &
+                                         'exponent of s in the pressure there: 1/2; corners -1/2; others by coupled slip'), &
+                                row_type('right_corner_intensity', 'force/length^(3/2)', error_edge_field, &
+                                         'intensity of the pressure at a corner at the right end, K/sqrt(s)'), &
+                                row_type('permanent_stick_length', 'length', error_stick, &
+                                         'length that sticks at both ends of the last cycle'), &
+                                row_type('steady_stick_length', 'length', error_edge_field, &
+                                         'the same of steady cycles on a straight load path, by superposition')]
 
 contains
 
@@ -242,6 +275,7 @@ contains
          end do
          call put(values, 'peak_shear', shear)
          call put(values, 'half_width_number', edges%half_width()*model%scene%curvature())
+         call add_edge_fields(simulation, patches, values)
          call add_tension(simulation, extremes, .false., 'lower', values)
          call add_tension(simulation, extremes, .true., 'upper', values)
          if (model%scene%wear%acts()) then
@@ -259,6 +293,34 @@ contains
          if (limit > 0.0_wp) call put(values, 'creepage_number', simulation%contact%rolling%creepage()/limit)
       end associate
    end subroutine add_present
+
+   !> Fields at the outermost edges of the contact.
+   subroutine add_edge_fields(simulation, patches, values)
+      type(simulation_type), intent(in) :: simulation
+      type(patch_type), intent(in) :: patches(:)
+      real(wp), intent(inout) :: values(:)
+      type(edge_field_type), allocatable :: edges(:, :)
+
+      if (size(patches) == 0) return
+      edges = edge_fields_of(simulation, patches)
+      call put_edge('left', edges(1, 1))
+      call put_edge('right', edges(2, size(patches)))
+
+   contains
+
+      subroutine put_edge(side, edge)
+         character(*), intent(in) :: side
+         type(edge_field_type), intent(in) :: edge
+
+         call put(values, side//'_normal_intensity', edge%normal)
+         call put(values, side//'_shear_intensity', edge%shear)
+         call put(values, side//'_slip_zone', edge%slip_zone)
+         call put(values, side//'_asymptotic_slip_zone', edge%asymptotic_slip_zone)
+         call put(values, side//'_edge_reach', edge%reach)
+         call put(values, side//'_edge_exponent', edge%exponent)
+         call put(values, side//'_corner_intensity', edge%corner)
+      end subroutine put_edge
+   end subroutine add_edge_fields
 
    !> The largest tension along the surface of a body; NaN for a rigid body or a matrix, and if singular.
    subroutine add_tension(simulation, extremes, upper, name, values)
@@ -334,6 +396,8 @@ contains
       call put(values, 'tangential_stiffness', cycle%return%stiffness_on_leaving)
       call put(values, 'secant_stiffness', cycle%secant_stiffness())
       call put(values, 'loss_factor', cycle%loss_factor())
+      call put(values, 'permanent_stick_length', permanent_stick_length(cycle))
+      call put(values, 'steady_stick_length', steady_stick_length(simulation, cycle))
       call add_turning_point(cycle%reversal%edges, 'reversal', values)
       call add_turning_point(cycle%return%edges, 'return', values)
       call add_numbers(simulation, cycle, values)

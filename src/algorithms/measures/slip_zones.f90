@@ -80,6 +80,7 @@ module mfv_slip_zones
       real(wp) :: farthest = 0.0_wp, half_width = 0.0_wp
    contains
       procedure :: add_segment
+      procedure :: turns_with
       procedure :: since
       procedure :: is_coarse
       procedure :: error_number
@@ -198,9 +199,9 @@ contains
          self%farthest = max(self%farthest, maxval(abs(state%fields%slip()), mask=in_contact(state%status)))
          self%half_width = max(self%half_width, 0.5_wp*sum(model%width, mask=in_contact(state%status)))
       end if
-      direction = merge(int(sign(1.0_wp, rates)), 0, abs(rates) > 0.0_wp)
+      direction = direction_of(rates)
       if (all(direction == 0)) return
-      if (any(direction /= self%direction)) call begin_direction(self, direction)
+      if (self%turns_with(rates)) call begin_direction(self, direction)
       self%most_nodes = max(self%most_nodes, nodes)
       self%dissipation = self%dissipation + (state%dissipation - start%dissipation)
       if (self%most_nodes == 0) then
@@ -223,6 +224,23 @@ contains
       self%nodes = self%nodes + self%most_nodes*work
       self%width = self%width + width*work
    end subroutine add_segment
+
+   !> Whether loads with these changes do not all go on in their directions: the last segments end at a turning point.
+   pure logical function turns_with(self, rates)
+      class(slip_record_type), intent(in) :: self
+      real(wp), intent(in) :: rates(motion_count)
+      integer :: direction(motion_count)
+
+      direction = direction_of(rates)
+      turns_with = any(direction /= 0) .and. any(direction /= self%direction)
+   end function turns_with
+
+   !> Directions of loads with these changes: -1, 0 or 1.
+   elemental integer function direction_of(rate)
+      real(wp), intent(in) :: rate
+
+      direction_of = merge(int(sign(1.0_wp, rate)), 0, abs(rate) > 0.0_wp)
+   end function direction_of
 
    !> Begin segments in other directions of the loads.
    pure subroutine begin_direction(self, direction)

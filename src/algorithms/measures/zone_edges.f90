@@ -25,7 +25,7 @@ module mfv_zone_edges
    implicit none
    private
    public :: zone_type, patch_type, zone_edges_type, find_patches, find_zone_edges, outermost_edges, largest_shear, &
-             zones_of, held, ends_with_body, is_beyond_corner, rises_at_end, slipping_run
+             zones_of, held, ends_with_body, is_beyond_corner, rises_at_end, slipping_run, has_known_error
 
    !> A zone of neighbouring nodes, from `first` to `last`, and its edges: arc lengths from the origin of x, positive to the
    !> right; and the uncertainty of these edges, lengths.

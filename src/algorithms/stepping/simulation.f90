@@ -35,7 +35,7 @@ module mfv_simulation
    public :: simulation_type, position_type, restart_type, trial_type, new_simulation, snapshot_type, sensitivity_type
    public :: history_events, history_steps, history_none
    public :: states_reversals, states_steps, states_none, states_last_cycle
-   public :: mark_loading, mark_reversal, mark_return, mark_cycle_start, mark_yield, mark_of, mark_count
+   public :: mark_loading, mark_reversal, mark_return, mark_cycle_start, mark_yield, mark_turn, mark_of, mark_count
 
    !> Records of the load history, in the order of the key &output history: one for every event, one for every step end, none.
    integer, parameter :: history_events = 1, history_steps = 2, history_none = 3
@@ -51,7 +51,9 @@ module mfv_simulation
    !> history, for the von Mises stress of each body. And the number of marks.
    integer, parameter :: mark_pending = 5, mark_candidate = mark_pending + 1
    integer, parameter :: mark_last_cycle = mark_candidate + most_rows*candidate_count
-   integer, parameter :: mark_yield = mark_last_cycle + 2*most_rows, mark_count = mark_yield + 2*most_rows - 1
+   integer, parameter :: mark_yield = mark_last_cycle + 2*most_rows
+   !> The last turning point of the loads: the start of the last segments in which each went on in one direction.
+   integer, parameter :: mark_turn = mark_yield + 2*most_rows, mark_count = mark_turn
    !> Rows in which the largest von Mises stress of the whole load history is searched for.
    integer, parameter :: rows_of_yield = 3
 
@@ -1044,6 +1046,8 @@ contains
          call self%contact%derivatives%begin_segment(mod(self%leg%number, 2) == 0 .and. .not. allocated(step%path), &
                                                      targets%control)
       call begin_segment(self, targets, step, before, segments)
+      if (self%contact%model%tangential .and. self%slip%turns_with(self%leg%segment%load%rate)) &
+         call set_mark(self, mark_turn, self%leg%number)
       call apply_segment(self, observer, error)
       if (.not. allocated(error)) call reach_exactly(self%contact, targets)
       if (allocated(self%contact%derivatives)) then

@@ -1,0 +1,181 @@
+!> Intensities of the tractions at the edges of contact patches (asymptotes of fretting contacts).
+!>
+!> At the distance s inside an edge where the pressure vanishes it is K_N sqrt(s); a change of the shear traction without slip is
+!> K_T/sqrt(s), and a sharp corner has the pressure K_C/sqrt(s) (Hills, Andresen, Moore and Barber; derivation and tests:
+!> docs/theory.md, intensities at edges). With full coupling and slip the exponents differ from 1/2 by l, tan(pi l) = beta tau/p
+!> (mfv_zone_edges): the factors are then those of sqrt(s) (s/c)^l and (s/c)^l/sqrt(s), c half the length of the patch. They follow
+!> from the outermost three nodes by the discrete solutions of mfv_edge_solutions, without the discretisation error there.
+module mfv_edge_intensity
+   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use mfv_contact_model, only: contact_model_type
+   use mfv_contact_state, only: contact_state_type
+   use mfv_edge_solutions, only: asymptote_type, graded_solution_type, least_power, most_power, new_graded_solution, &
+                                 root_asymptote, singular_asymptote
+   use mfv_kinds, only: wp
+   use mfv_zone_edges, only: has_known_error, patch_type
+   implicit none
+   private
+   public :: find_root_intensity, singular_intensities
+
+   !> Nodes that an asymptote is found from.
+   integer, parameter :: samples = 3
+   !> Most intervals of an unequal mesh for its discrete solution.
+   integer, parameter :: most_intervals = 32
+
+contains
+
+   !> The pressure at the left (`side` -1) or right (1) edge of a patch where it vanishes: `intensity` K_N, force/length^(5/2), and
+   !> `reach`, length, the distance at which the next term of its series is a tenth of the first. NaN at sharp corners, with fewer
+   !> than three nodes, and where the equations are not those of mfv_edge_solutions.
+   subroutine find_root_intensity(model, state, patch, side, intensity, reach)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      type(patch_type), intent(in) :: patch
+      integer, intent(in) :: side
+      real(wp), intent(out) :: intensity, reach
+      !> Part of the first term.
+      real(wp), parameter :: small = 0.1_wp
+      type(asymptote_type) :: asymptote
+      real(wp) :: unit, power
+
+      intensity = ieee_value(1.0_wp, ieee_quiet_nan)
+      reach = intensity
+      power = merge(patch%right_power, patch%left_power, side > 0)
+      if (merge(patch%right_ends, patch%left_ends, side > 0) .or. .not. is_known(model, patch, side, power)) return
+      associate (pressure => inwards(state%fields%pressure, patch, side))
+         if (allocated(model%scene%mesh%ends)) then
+            call solve_graded()
+         else
+            unit = model%width(outermost(patch, side))
+            asymptote = root_asymptote(pressure(:samples), power)
+         end if
+      end associate
+      if (.not. asymptote%leading > 0.0_wp) return
+      intensity = asymptote%leading/unit**power*half_length(patch)**(power - 0.5_wp)
+      if (abs(asymptote%next) > 0.0_wp) reach = small*unit*asymptote%leading/abs(asymptote%next)
+
+   contains
+
+      subroutine solve_graded()
+         type(graded_solution_type) :: solution
+
+         solution = graded_at(model, patch, side, power)
+         unit = solution%length_unit()
+         asymptote = solution%graded_root(inwards(state%fields%pressure, patch, side))
+      end subroutine solve_graded
+   end subroutine find_root_intensity
+
+   !> Intensities at the left and right edge of a patch, force/length^(3/2), of a `traction`, force/length^2, shape (nodes), that
+   !> grows as the distance to the `powers` less one (a half, but for slip with full coupling): the pressure at corners, and
+   !> tractions of stuck nodes. NaN as above; at an edge that is not `singular` 0, for that of the other one.
+   function singular_intensities(model, traction, patch, powers, singular) result(intensities)
+      type(contact_model_type), intent(in) :: model
+      real(wp), intent(in) :: traction(:), powers(2)
+      type(patch_type), intent(in) :: patch
+      logical, intent(in) :: singular(2)
+      real(wp) :: intensities(2)
+      integer, parameter :: sides(2) = [-1, 1]
+      type(asymptote_type) :: asymptote
+      real(wp) :: outwards(2), offset, unit
+      integer :: i
+
+      intensities = 0.0_wp
+      outwards = 0.0_wp
+      do i = 1, size(sides)
+         if (.not. singular(i)) cycle
+         if (.not. is_known(model, patch, sides(i), powers(i))) then
+            intensities(i) = ieee_value(1.0_wp, ieee_quiet_nan)
+            cycle
+         end if
+         associate (values => inwards(traction, patch, sides(i)), node => outermost(patch, sides(i)))
+            if (allocated(model%scene%mesh%ends)) then
+               call solve_graded(values)
+               outwards(i) = 0.5_wp*model%width(node)
+            else
+               unit = model%width(node)
+               call singular_asymptote(values(:samples), powers(i), asymptote, offset)
+               outwards(i) = offset*unit
+            end if
+         end associate
+         intensities(i) = asymptote%leading*unit**(1.0_wp - powers(i))*half_length(patch)**(powers(i) - 0.5_wp)
+      end do
+      if (all(singular)) call move_edges(model, patch, outwards, intensities)
+
+   contains
+
+      subroutine solve_graded(values)
+         real(wp), intent(in) :: values(:)
+         type(graded_solution_type) :: solution
+
+         solution = graded_at(model, patch, sides(i), powers(i))
+         unit = solution%length_unit()
+         asymptote = solution%graded_singular(values)
+      end subroutine solve_graded
+   end function singular_intensities
+
+   !> Intensities at the edges of a patch from those of the discrete solution, whose edges lie `outwards` of the outermost nodes,
+   !> lengths. Tractions (m + d (x - x0))/sqrt((x - l)(r - x)), x0 the middle, have the resultant pi m and the displacement pi A d x:
+   !> m and d are those of the loads and do not depend on where the edges are.
+   pure subroutine move_edges(model, patch, outwards, intensities)
+      type(contact_model_type), intent(in) :: model
+      type(patch_type), intent(in) :: patch
+      real(wp), intent(in) :: outwards(2)
+      real(wp), intent(inout) :: intensities(2)
+      real(wp) :: length, mean, slope
+
+      length = model%arc(patch%last) - model%arc(patch%first) + sum(outwards)
+      mean = 0.5_wp*sum(intensities)*sqrt(length)
+      slope = (intensities(2) - intensities(1))/sqrt(length)
+      length = patch%length()
+      intensities = (mean + [-0.5_wp, 0.5_wp]*slope*length)/sqrt(length)
+   end subroutine move_edges
+
+   !> Whether a discrete solution with this exponent holds at an edge of a patch.
+   logical function is_known(model, patch, side, power)
+      type(contact_model_type), intent(in) :: model
+      type(patch_type), intent(in) :: patch
+      integer, intent(in) :: side
+      real(wp), intent(in) :: power
+
+      is_known = patch%last - patch%first + 1 >= samples .and. power > least_power .and. power < most_power
+      if (is_known) is_known = has_known_error(model, outermost(patch, side), samples)
+   end function is_known
+
+   !> The discrete solution of the unequal intervals at an edge of a patch.
+   type(graded_solution_type) function graded_at(model, patch, side, power) result(solution)
+      type(contact_model_type), intent(in) :: model
+      type(patch_type), intent(in) :: patch
+      integer, intent(in) :: side
+      real(wp), intent(in) :: power
+
+      solution = new_graded_solution(inwards(model%width, patch, side), power)
+   end function graded_at
+
+   !> Values of the outermost nodes of a patch from its left (`side` -1) or right (1) edge inwards, `most_intervals` at most.
+   pure function inwards(values, patch, side)
+      real(wp), intent(in) :: values(:)
+      type(patch_type), intent(in) :: patch
+      integer, intent(in) :: side
+      real(wp), allocatable :: inwards(:)
+      integer :: number
+
+      number = min(patch%last - patch%first + 1, most_intervals)
+      associate (edge => outermost(patch, side))
+         inwards = values(edge:edge - side*(number - 1):-side)
+      end associate
+   end function inwards
+
+   pure integer function outermost(patch, side)
+      type(patch_type), intent(in) :: patch
+      integer, intent(in) :: side
+
+      outermost = merge(patch%last, patch%first, side > 0)
+   end function outermost
+
+   pure real(wp) function half_length(patch)
+      type(patch_type), intent(in) :: patch
+
+      half_length = 0.5_wp*patch%length()
+   end function half_length
+
+end module mfv_edge_intensity
