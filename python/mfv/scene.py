@@ -192,7 +192,7 @@ class Body(KeyGroup):
     """A body: the keys of &body. `data`: arrays in place of the `file` of a profile or a matrix. `layers`: bonded on it, from the
     surface down; on a rigid body they are all that deforms."""
 
-    shape: Literal["half_plane", "disk", "hole", "flat_punch", "rounded_punch", "wedge", "power", "profile", "matrix", "wave"]
+    shape: Literal["half_plane", "disk", "hole", "flat_punch", "rounded_punch", "wedge", "power", "profile", "matrix", "wave", "edge"]
     rigid: bool | None = None
     shear_modulus: float | None = None
     youngs_modulus: float | None = None
@@ -207,6 +207,8 @@ class Body(KeyGroup):
     exponent: float | None = None
     amplitude: float | None = None
     wavelength: float | None = None
+    normal_intensity: float | None = None
+    edge_length: float | None = None
     elasticity: Literal["own", "half_plane", "orthotropic", "anisotropic"] | None = None
     youngs_modulus_1: float | None = None
     youngs_modulus_2: float | None = None
@@ -293,6 +295,12 @@ class Body(KeyGroup):
 
         options = {name: keys.pop(name) for name in profiles.Reading.__annotations__ if name in keys}
         return cls(shape="profile", data=_measured(x, **options), **keys)
+
+    @classmethod
+    def edge(cls, normal_intensity: float, edge_length: float, **elastic: Unpack[Elastic]) -> Body:
+        """A contact edge by itself, beside a half-plane: at the half-width `edge_length` [length] the pressure at the distance s from
+        the right edge is `normal_intensity` sqrt(s) [force/length^(5/2)]."""
+        return cls(shape="edge", normal_intensity=normal_intensity, edge_length=edge_length, **elastic)
 
     @classmethod
     def matrix(
@@ -392,6 +400,8 @@ class Step(KeyGroup):
     lower_bulk_stress: float | None = None
     upper_bulk_stress: float | None = None
     interference: float | None = None
+    normal_intensity: float | None = None
+    shear_intensity: float | None = None
     friction: bool | None = None
     cycles: int | None = None
     steady_tolerance: float | None = None
@@ -419,6 +429,8 @@ class History(KeyGroup):
     lower_bulk_stress: LoadList | None = None
     upper_bulk_stress: LoadList | None = None
     interference: LoadList | None = None
+    normal_intensity: LoadList | None = None
+    shear_intensity: LoadList | None = None
     period: int | None = None
     cycles: int | None = None
     steady_tolerance: float | None = None

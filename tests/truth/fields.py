@@ -5,7 +5,9 @@ A field that a table does not name has to stay what it is.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
+from fractions import Fraction
 
 import numpy as np
 
@@ -38,6 +40,7 @@ ODD = {
     "patch_shift_loading", "patch_shift_reversal", "patch_shift_return", "shift_drift", "rotation_drift",
     "lower_tension_x", "upper_tension_x", "contact_edge", "stick_edge",
     "largest_lower_tension_x", "largest_upper_tension_x", "largest_pressure_x",
+    "left_shear_intensity", "right_shear_intensity",
 }  # fmt: skip
 #: Positions: they change their sign when the picture is turned or mirrored, and move with the contact.
 POSITIONS = {
@@ -49,7 +52,9 @@ POSITIONS = {
 OF_PATCHES = {
     "contact_left", "contact_right", "contact_length", "normal_force", "tangential_force", "peak_pressure", "peak_shear",
     "stick_zones", "stick_left", "stick_right", "stick_length",
-}  # fmt: skip
+} | {f"{side}_{of_edge}" for side in ("left", "right") for of_edge in (
+    "normal_intensity", "shear_intensity", "slip_zone", "asymptotic_slip_zone", "edge_reach", "edge_exponent", "corner_intensity",
+)}  # fmt: skip
 
 
 def outputs(result: mfv.Result) -> dict[str, tuple[str, np.ndarray]]:
@@ -103,8 +108,13 @@ def differences(
 
 def mirrored(name: str, unit: str, values: np.ndarray) -> tuple[str, np.ndarray]:
     """What a field is in the mirror image."""
-    sign = -1.0 if name in ODD or other_side(name) != name else 1.0
+    sign = -1.0 if name in ODD or is_edge_position(name) else 1.0
     return other_side(name), sign * values[::-1] if is_along_the_surface(name) else sign * values
+
+
+def is_edge_position(name: str) -> bool:
+    """Whether a field is the position of a left or right edge; others of an edge begin with its side."""
+    return other_side(name) != name and not name.startswith(("left_", "right_"))
 
 
 def is_along_the_surface(name: str) -> bool:
@@ -132,7 +142,7 @@ def exchanged(name: str, unit: str, values: np.ndarray) -> tuple[str, np.ndarray
         "patch_shift_loading", "patch_shift_reversal", "patch_shift_return",
         "tangential_displacement", "upper_tangential_displacement",
     }  # fmt: skip
-    sign = -1.0 if name in turned or other_side(name) != name or name.endswith("_y") else 1.0
+    sign = -1.0 if name in turned or is_edge_position(name) or name.endswith("_y") else 1.0
     return other_body(other_side(name)), sign * values[::-1] if is_along_the_surface(name) else sign * values
 
 
@@ -142,9 +152,8 @@ def converter(length: float, stress: float) -> Callable[[str, str, np.ndarray], 
 
     def converted(name: str, unit: str, values: np.ndarray) -> tuple[str, np.ndarray]:
         factor = 1.0
-        for place, word in enumerate(unit.split("/")):
-            base, _, power = word.partition("^")
-            factor *= sizes[base] ** (int(power or 1) * (1 if place == 0 else -1))
+        for base, power in re.findall(r"(/?[a-z1]+)(?:\^\(?([\d/]+)\)?)?", unit):
+            factor *= sizes[base.lstrip("/")] ** (float(Fraction(power or "1")) * (-1 if base.startswith("/") else 1))
         return name, values * factor
 
     return converted

@@ -22,9 +22,10 @@ SLIPPERY = 1.0e-3
 
 #: Names of quantities and the attribute of `Scales` that is their scale; the first that matches counts.
 _TABLE = [
-    (r".*(left|right)|contact_centre.*|.*_edge|.*(tension|shear|pressure|von_mises)_[xy]|x|contact_length|slip_zone.*", "half_width"),
+    (r".*(left|right)|contact_centre.*|.*_edge|.*(tension|shear|pressure|von_mises)_[xy]|x|contact_length|.*slip_zone.*|.*_edge_reach|.*stick_length", "half_width"),
+    (r".*_shear_intensity", "shear_intensity"),
     (r".*interface_(tension|shear)", "pressure"),
-    (r".*stick_ratio.*|patch_shift.*|change|loss_factor|creepage_number", "one"),
+    (r".*stick_ratio.*|patch_shift.*|change|loss_factor|creepage_number|.*_edge_exponent", "one"),
     (r"dissipation_number", "friction_squared"),
     (r"shear_number", "friction"),
     (r"tangential_force|force_amplitude", "friction_force"),
@@ -84,6 +85,7 @@ class Scales:
         self.pressure = 2.0 * self.normal_force / (math.pi * self.half_width)
         bulk = max((abs(float(step[name])) for step in steps for name in step if name.endswith("bulk_stress")), default=0.0)
         self.shear = max(mu * self.pressure, bulk)
+        self.shear_intensity = self.shear * math.sqrt(self.half_width)
         self.approach = self.normal_force / (math.pi * modulus)
         self.shift = max(mu * self.approach, bulk * self.half_width / (2.0 * modulus))
         self.rotation = self.approach / self.half_width

@@ -42,7 +42,9 @@ _ZONES = {
 COUNTED = {"observables/largest_pressure_x", "cycles/largest_pressure_x"}
 
 _EDGES = r".*half_width|half_width_number|contact_(length|left|right|centre.*)|patch_shift.*|patches"
-_STICK = r"stick_ratio|stick_(left|right|length|zones)"
+_STICK = r"stick_ratio|stick_(left|right|length|zones)|(left|right)_slip_zone"
+#: Of edges of the contact, but for those of stick zones.
+_EDGE_FIELDS = r"(left|right)_(.*_intensity|asymptotic_slip_zone|edge_reach)|steady_stick_length"
 _TRACTIONS = r"peak_(pressure|shear)|(pressure|shear)_number"
 _TENSION = r"(lower|upper)_tension(_x)?"
 _CYCLE = r"cycle_dissipation|dissipation_number|loss_factor|.*_force_work|.*stress_work|moment_work"
@@ -50,7 +52,7 @@ _MOTIONS = r"approach.*|shift.*|rotation.*|moment|.*_contraction|.*stiffness.*"
 #: Names after "not resolved:" in a warning, and the quantities that follow from the one that is named; others stand for themselves.
 NAMED = {
     "contact_half_width": r"(contact_)?half_width(_number)?|contact_(left|right|centre)",
-    "contact_length": r"contact_(length|left|right|centre)|patches",
+    "contact_length": rf"contact_(length|left|right|centre)|patches|{_EDGE_FIELDS}",
     "stick_ratio": _STICK,
     "peak_pressure": r"peak_pressure|pressure_number",
     "peak_shear": r"peak_shear|shear_number",

@@ -477,6 +477,8 @@ contains
          where (observables%error == error_edges .and. observables%unit == '1') &
             allowances = 2.0_wp*allowances/max(values(observable_place('contact_length')), model%interval())
          where (observables%name == 'contact_length') allowances = 2.0_wp*allowances
+         where (observables%error == error_stick .and. observables%unit == 'length') &
+            allowances = values(observable_place('contact_length'))*allowances
          call add_narrow_stick(observable_place('smallest_stick_ratio'), contact_interval(model, simulation%contact%state)/ &
                                max(values(observable_place('contact_length')), model%interval()))
          call add_coarse_slip(simulation%slip, 'dissipation', 1.0_wp)

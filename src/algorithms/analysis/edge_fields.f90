@@ -206,16 +206,25 @@ contains
       end associate
    end function changes_of_loads
 
-   !> Length of the part that sticks both at the far end of a cycle and at its end, between the outermost edges of stick zones.
-   pure real(wp) function permanent_stick_length(cycle) result(length)
+   !> Length of the part that sticks both at the far end of a cycle and at its end; NaN with several patches or stick zones.
+   elemental real(wp) function permanent_stick_length(cycle) result(length)
       type(cycle_type), intent(in) :: cycle
 
       associate (there => cycle%reversal%edges, back => cycle%return%edges)
          length = 0.0_wp
+         if (.not. (is_one_zone(there) .and. is_one_zone(back))) length = ieee_value(1.0_wp, ieee_quiet_nan)
          if (there%stick .and. back%stick) &
-            length = max(min(there%stick_right, back%stick_right) - max(there%stick_left, back%stick_left), 0.0_wp)
+            length = length + max(min(there%stick_right, back%stick_right) - max(there%stick_left, back%stick_left), 0.0_wp)
       end associate
    end function permanent_stick_length
+
+   !> Whether one patch has one stick zone, or none.
+   elemental logical function is_one_zone(edges)
+      type(zone_edges_type), intent(in) :: edges
+
+      is_one_zone = edges%patches == 1 .and. &
+                    abs(edges%stick_right - edges%stick_left - edges%stick_length) <= certified*edges%contact_length
+   end function is_one_zone
 
    !> Length of the permanent stick zone of steady cycles on a straight load path, by superposition: the contact under the normal
    !> force (P1 + P2)/2 - |Q2 - Q1|/(2 mu), where |Q2 - Q1| > mu |P2 - P1| (Barber, Davies and Hills 2011; half-planes without

@@ -149,8 +149,13 @@ contains
       case default
          named_as = ''
          if (index(name, 'largest_') == 1 .or. index(name, 'smallest_') == 1) named_as = 'extremes'
-         if (any([character(9) :: 'loading', 'reversal', 'return', 'amplitude'] == name(index(name, '_', back=.true.) + 1:)) .or. &
-             name == 'first_cycle_dissipation') named_as = 'turning_points'
+         associate (ending => name(index(name, '_', back=.true.) + 1:))
+            if (any([character(9) :: 'loading', 'reversal', 'return', 'amplitude'] == ending) .or. &
+                name == 'first_cycle_dissipation' .or. name == 'permanent_stick_length') named_as = 'turning_points'
+            if (any([character(9) :: 'intensity', 'reach', 'zone'] == ending) .or. name == 'steady_stick_length') &
+               named_as = 'contact_length'
+            if (name == 'left_slip_zone' .or. name == 'right_slip_zone') named_as = 'stick_ratio'
+         end associate
       end select
    end function named_as
 
@@ -428,8 +433,9 @@ contains
             call add_work(cycle%slip(), 'cycle_dissipation loss_factor nonlinear_shift largest_slip_range')
             call add_work(cycle%first_slip, 'first_cycle_dissipation')
             call add_zones(cycle%loading_slip, 'stick_ratio_loading')
-            call add_zones(cycle%reversal%slip, 'stick_ratio_reversal extremes')
-            call add_zones(cycle%return%slip, 'stick_ratio_return')
+            ! What the slip of one half cycle does not erase remains in the other.
+            call add_zones(cycle%reversal%slip, 'stick_ratio_reversal extremes stick_ratio_return permanent_stick_length')
+            call add_zones(cycle%return%slip, 'stick_ratio_return stick_ratio_reversal permanent_stick_length')
          end associate
       end if
       if (names == '') return

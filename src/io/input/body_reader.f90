@@ -183,6 +183,8 @@ contains
          keys = 'coefficient exponent'
       case ('wave')
          keys = 'amplitude wavelength'
+      case ('edge')
+         keys = 'normal_intensity edge_length'
       case ('profile', 'matrix')
          keys = 'file'
       case default
@@ -294,6 +296,9 @@ contains
          body = new_body(new_power(value('coefficient'), value('exponent')))
       case ('wave')
          body = new_body(new_wave(value('amplitude'), value('wavelength')))
+      case ('edge')
+         ! Until the materials of both bodies are known (mfv_edge_reader).
+         body = new_body(new_power(1.0_wp/value('edge_length'), 2.0_wp))
       case default
          call read_body_file(reader, number, body, error)
       end select

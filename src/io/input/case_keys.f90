@@ -58,7 +58,7 @@ contains
    subroutine add_body_keys(keys)
       type(catalogue_type), intent(inout) :: keys
 
-      call keys%add('body', 'shape', kind_choice, 'needed; first body below, second body above', choices=shape_names)
+      call keys%add('body', 'shape', kind_choice, 'needed; first body below, second body above', choices=shape_names//' edge')
       call keys%add('body', 'rigid', kind_logical, 'whether the body is rigid; at least one body must be elastic; a '// &
                     'flat_punch must be rigid', &
                     default='.false.')
@@ -82,6 +82,11 @@ contains
       call keys%add('body', 'amplitude', kind_real, 'wave: the surface recedes by amplitude*(1 - cos(2 pi x/wavelength)), needed', &
                     unit='length', above=0.0_wp)
       call keys%add('body', 'wavelength', kind_real, 'wave: its length, needed', unit='length', above=0.0_wp)
+      call keys%add('body', 'normal_intensity', kind_real, 'edge: intensity K_N of the pressure K_N sqrt(s), s the '// &
+                    'distance from the right edge, where the half-width of the model is edge_length, needed', &
+                    unit='force/length^(5/2)', above=0.0_wp)
+      call keys%add('body', 'edge_length', kind_real, 'edge: half-width of the model at normal_intensity, needed; far '// &
+                    'larger than the slip zone', unit='length', above=0.0_wp)
       call keys%add('body', 'elasticity', kind_choice, 'how the surface deforms: a disk or hole as such by default, or as a '// &
                     'half-plane, as all other shapes do; orthotropic, anisotropic: as a half-plane of such a material', &
                     default='own', choices=elasticity_names)
@@ -252,6 +257,10 @@ contains
                                               'tangential_force: mu the largest coefficient of &friction, P the normal_force '// &
                                          'of this step or of the last step before it that has one', lower=-1.0e6_wp, upper=1.0e6_wp)
       end do
+      call keys%add('step', 'normal_intensity', kind_real, 'edge: target of K_N, instead of normal_force', &
+                    unit='force/length^(5/2)', lower=0.0_wp)
+      call keys%add('step', 'shear_intensity', kind_real, 'edge: target of K_T at the right edge, with the bulk stresses of '// &
+                    'this step, instead of tangential_force', unit='force/length^(3/2)')
       call keys%add('step', 'friction', kind_logical, 'whether friction acts during this step', default='.true.')
       call keys%add('step', 'cycles', kind_integer, '0: load to the targets; n: load to the targets and back to the loads at '// &
                     'the start of the step, n times', default='0', lower=0.0_wp, upper=real(most_cycles, wp))
@@ -276,6 +285,9 @@ contains
          end do
          if (i == motion_shift) call add_history_key('force_ratio', '')
       end do
+      call add_history_key('normal_intensity', 'force/length^(5/2)')
+      keys%keys(keys%size)%lower = 0.0_wp
+      call add_history_key('shear_intensity', 'force/length^(3/2)')
       call keys%add('history', 'period', kind_integer, 'number of the last turning points that are a cycle, repeated as often '// &
                     'as cycles says; if omitted: all of them if there are cycles, else none', lower=2.0_wp, upper=most_rows)
       call keys%add('history', 'cycles', kind_integer, 'how many times the last turning points are passed through', default='1', &

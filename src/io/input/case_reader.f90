@@ -5,6 +5,7 @@ module mfv_case_reader
    use mfv_case_data, only: case_data_type
    use mfv_case_keys, only: case_catalogue
    use mfv_discretisation_error, only: has_coarser_meshes
+   use mfv_edge_reader, only: form_edge
    use mfv_error, only: error_type
    use mfv_friction, only: friction_type, new_friction_law
    use mfv_friction_reader
@@ -116,6 +117,7 @@ contains
       if (.not. allocated(error)) call read_body(reader, 2, scene%plane, scene%upper, error)
       scene%mesh%radial = reader%text_value('mesh', 1, 'normals') == 'radial'
       if (.not. allocated(error)) call check_pair(reader, scene, error)
+      if (.not. allocated(error)) call form_edge(reader, scene, error)
       if (.not. allocated(error)) call read_period(reader, scene, error)
       if (allocated(error)) return
       call read_friction(reader, scene, error)

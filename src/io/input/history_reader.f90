@@ -1,5 +1,6 @@
 !> The load history of a case: a step for every turning point in &history, whose loads are lists of its keys or columns of a file.
 module mfv_history_reader
+   use mfv_edge_reader, only: convert_intensities
    use mfv_error, only: error_type
    use mfv_key_reader
    use mfv_keys, only: suggest
@@ -147,6 +148,7 @@ contains
       type(step_type), intent(out) :: step
       real(wp), allocatable, intent(out) :: targets(:, :)
       type(error_type), allocatable, intent(out) :: error
+      real(wp), allocatable :: normal(:), shear(:)
       integer :: i, column, control, ratio
 
       allocate (targets(motion_count, size(table%values, 2)), source=0.0_wp)
@@ -164,6 +166,12 @@ contains
       end do
       ratio = column_of(table, 'force_ratio')
       if (ratio > 0) call find_ratio(reader, scene, table, ratio, step, targets, error)
+      if (allocated(error)) return
+      column = column_of(table, 'normal_intensity')
+      if (column > 0) normal = table%values(column, :)
+      column = column_of(table, 'shear_intensity')
+      if (column > 0) shear = table%values(column, :)
+      call convert_intensities(reader, group, 1, scene, normal, shear, step, targets, error)
       if (allocated(error)) return
       if (all(step%control == control_keep)) &
          call reader%complain(group, 1, 'file', 'has no load: its only column is time', error)

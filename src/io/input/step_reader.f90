@@ -1,5 +1,6 @@
 !> The steps of a case, from its text, and what they have in common with a load history (mfv_history_reader).
 module mfv_step_reader
+   use mfv_edge_reader, only: convert_intensities
    use mfv_error, only: error_type
    use mfv_key_reader
    use mfv_kinds, only: wp
@@ -38,6 +39,8 @@ contains
                if (j == motion_shift .and. .not. allocated(error)) call read_force_ratio(reader, i, scene, error)
                if (allocated(error)) return
             end do
+            call read_intensities(reader, i, scene, error)
+            if (allocated(error)) return
             step%friction = reader%logical_value('step', i, 'friction')
             step%cycles = reader%integer_value('step', i, 'cycles')
             call read_steady_tolerance(reader, 'step', i, step, error)
@@ -45,7 +48,7 @@ contains
             if (all(step%control == control_keep)) then
                call fail(reader, line_of(reader, 'step', i), '&step '//to_text(i)//': needs a target: normal_force or '// &
                          'approach, tangential_force, force_ratio or shift, moment or rotation, lower_bulk_stress, '// &
-                         'upper_bulk_stress, interference', error)
+                         'upper_bulk_stress, interference; with shape=''edge'' normal_intensity, shear_intensity', error)
                return
             end if
          end associate
@@ -82,6 +85,25 @@ contains
                                                     *scene%friction%static%largest()*scene%steps(last)%target(motion_approach)
       end if
    end subroutine read_force_ratio
+
+   !> Forces of step `number` by the intensities of an edge.
+   subroutine read_intensities(reader, number, scene, error)
+      type(reader_type), intent(in) :: reader
+      integer, intent(in) :: number
+      type(scene_type), intent(inout) :: scene
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp), allocatable :: normal(:), shear(:)
+      real(wp) :: targets(motion_count, 1)
+      type(step_type) :: step
+
+      if (reader%has('step', number, 'normal_intensity')) normal = [reader%real_value('step', number, 'normal_intensity')]
+      if (reader%has('step', number, 'shear_intensity')) shear = [reader%real_value('step', number, 'shear_intensity')]
+      step = scene%steps(number)
+      targets(:, 1) = step%target
+      call convert_intensities(reader, 'step', number, scene, normal, shear, step, targets, error)
+      scene%steps(number)%control = step%control
+      scene%steps(number)%target = targets(:, 1)
+   end subroutine read_intensities
 
    !> The target of one motion of step `number`: a force or a displacement.
    subroutine read_target(reader, number, motion, control, target, error)

@@ -11,6 +11,7 @@ module mfv_result_fields
    use mfv_compliance, only: coupling_names
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
+   use mfv_edge_fields, only: edge_field_type, edge_fields_of, permanent_stick_length
    use mfv_error_bar
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
@@ -575,6 +576,7 @@ contains
 call list%add('contact_right', simulation%contact%model%scene%x_of_arc(patches%right), along, 'length', 'right edge'//between_nodes)
       call list%add('contact_length', patches%length(), along, 'length', 'length, from its edges between nodes')
       call add_patch_loads(list, simulation, patches)
+      call add_patch_edges(list, edge_fields_of(simulation, patches))
       if (.not. simulation%contact%model%tangential) return
       call list%add('stick_zones', [(size(patches(i)%stick), i=1, size(patches))], along, 'number of stick zones in the '// &
                     'patch'//narrow)
@@ -598,6 +600,34 @@ call list%add('contact_right', simulation%contact%model%scene%x_of_arc(patches%r
          if (right) edge = simulation%contact%model%scene%x_of_arc(patch%stick(size(patch%stick))%right)
       end function outermost
    end subroutine add_patches
+
+   !> Fields at the left and right edges of the patches, shape (2, patches); those that no patch has are omitted.
+   subroutine add_patch_edges(list, edges)
+      type(list_type), intent(inout) :: list
+      type(edge_field_type), intent(in) :: edges(:, :)
+      character(*), parameter :: side(2) = [character(5) :: 'left', 'right'], there = ' edge, as in /observables'
+      integer :: i
+
+      do i = 1, size(side)
+         call add('normal_intensity', edges(i, :)%normal, 'force/length^(5/2)', 'intensity K_N of the pressure')
+         call add('shear_intensity', edges(i, :)%shear, 'force/length^(3/2)', 'intensity K_T of the shear if stuck')
+         call add('slip_zone', edges(i, :)%slip_zone, 'length', 'width of the slip zone')
+         call add('asymptotic_slip_zone', edges(i, :)%asymptotic_slip_zone, 'length', 'width of the slip zone by K_N and K_T')
+         call add('edge_reach', edges(i, :)%reach, 'length', 'distance at which the pressure differs from K_N sqrt(s) by a tenth')
+         call add('edge_exponent', edges(i, :)%exponent, '1', 'exponent of the distance in the pressure')
+         call add('corner_intensity', edges(i, :)%corner, 'force/length^(3/2)', 'intensity of the pressure of a corner')
+      end do
+
+   contains
+
+      subroutine add(name, values, unit, meaning)
+         character(*), intent(in) :: name, unit, meaning
+         real(wp), intent(in) :: values(:)
+
+         if (all(ieee_is_nan(values))) return
+         call list%add(trim(side(i))//'_'//name, values, along_patches, unit, meaning//' at the '//trim(side(i))//there)
+      end subroutine add
+   end subroutine add_patch_edges
 
    !> Forces and peak tractions of the patches; the forces add up to those of the contact.
    subroutine add_patch_loads(list, simulation, patches)
@@ -680,6 +710,8 @@ call list%add('contact_right', simulation%contact%model%scene%x_of_arc(patches%r
                     'reversal, along the surface from the origin')
       call list%add('contact_centre_return', c%return%edges%centre(), along, 'length', 'middle of the contact at the end of '// &
                     'the cycle, along the surface from the origin')
+      call list%add('permanent_stick_length', permanent_stick_length(c), along, 'length', 'length that sticks at both ends of '// &
+                    'the cycle; NaN with several patches or stick zones')
       if (simulation%marks(mark_cycle_start)%step == 0 .or. simulation%marks(mark_return)%reversal == 0) return
       before = simulation%padded(simulation%marks(mark_cycle_start))
       after = simulation%padded(simulation%marks(mark_return))
