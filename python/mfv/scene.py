@@ -192,7 +192,9 @@ class Body(KeyGroup):
     """A body: the keys of &body. `data`: arrays in place of the `file` of a profile or a matrix. `layers`: bonded on it, from the
     surface down; on a rigid body they are all that deforms."""
 
-    shape: Literal["half_plane", "disk", "hole", "flat_punch", "rounded_punch", "wedge", "power", "profile", "matrix", "wave", "edge"]
+    shape: Literal[
+        "half_plane", "disk", "hole", "flat_punch", "rounded_punch", "wedge", "power", "profile", "matrix", "wave", "edge"
+    ]
     rigid: bool | None = None
     shear_modulus: float | None = None
     youngs_modulus: float | None = None

@@ -13,6 +13,7 @@ ELASTIC = {"shape": "'half_plane'", "shear_modulus": "1.0", "poisson_ratio": "0.
 RIGID_DISK = {"shape": "'disk'", "radius": "0.25", "rigid": ".true."}
 ELASTIC_DISK = {"shape": "'disk'", "radius": "0.25", "shear_modulus": "1.0", "poisson_ratio": "0.3"}
 RIGID_PLANE = {"shape": "'half_plane'", "rigid": ".true."}
+EDGE = {"shape": "'edge'", "normal_intensity": "0.02", "edge_length": "0.01", "rigid": ".true."}
 MESH = {"nodes": "11", "half_width": "0.02"}
 PRESS = {"normal_force": "1e-3", "friction": ".false."}
 SHEAR = {"tangential_force": "2e-4"}
@@ -73,6 +74,7 @@ SCENES: dict[str, Groups] = {
         {},
         {"normal_force": "1e-3"},
     ),
+    "edge": scene(ELASTIC, EDGE, MESH, COULOMB, {"normal_intensity": "0.02"}, {"shear_intensity": "1e-4"}),
     "profile": scene(
         ELASTIC, {"shape": "'profile'", "file": "'profile.txt'", "rigid": ".true."}, MESH, {}, {"normal_force": "1e-3"}
     ),
@@ -114,6 +116,8 @@ SCENES: dict[str, Groups] = {
         ELASTIC_DISK | {"shape": "'hole'"}, ELASTIC_DISK, {"normals": "'radial'", "nodes": "12"}, COULOMB, {"interference": "1e-3"}
     )
     + [("history", {"normal_force": "1e-4, -1e-4"})],
+    "history of an edge": scene(ELASTIC, EDGE, MESH, COULOMB, {"normal_intensity": "0.02"})
+    + [("history", {"shear_intensity": "1e-4, -1e-4"})],
     "rolling": scene(ELASTIC_DISK, RIGID_PLANE, MESH, COULOMB, PRESS, {"moment": "1e-6"}),
 }
 
@@ -201,7 +205,7 @@ def part(place: str, scene: str, value: str, **more: object) -> Row:
     return real(place, scene, value, lower=1e-12, upper=1.0, **more)
 
 
-SHAPES = "half_plane disk hole flat_punch rounded_punch wedge power profile matrix wave"
+SHAPES = "half_plane disk hole flat_punch rounded_punch wedge power profile matrix wave edge"
 MODULUS = "force/length^2"
 NO_FRICTION = "must be 0 in a step without friction (or where every coefficient is 0)"
 BELOW_KINETIC = "must not be above mu_static"
@@ -227,6 +231,7 @@ CASE: dict[tuple[str, str], Row] = {
             "'wedge'": "angle is missing",
             "'power'": "coefficient is missing",
             "'wave'": "amplitude is missing",
+            "'edge'": "normal_intensity is missing",
             "'profile'": "has no effect|file is missing",
             "'matrix'": "has no effect",
         },
@@ -284,6 +289,17 @@ CASE: dict[tuple[str, str], Row] = {
     ),
     ("body", "wavelength"): positive(
         "body(2)", "wave", "0.1", "length", needed=": wavelength is missing; it must be a number above 0"
+    ),
+    ("body", "normal_intensity"): positive(
+        "body(2)",
+        "edge",
+        "0.02",
+        "force/length^(5/2)",
+        needed=": normal_intensity is missing; it must be a number above 0",
+        refused={"1e-100": "is too large beside the normal_intensity of the body"},
+    ),
+    ("body", "edge_length"): positive(
+        "body(2)", "edge", "0.01", "length", needed=": edge_length is missing; it must be a number above 0"
     ),
     ("body", "elasticity"): choice(
         "body(1)",
@@ -448,6 +464,16 @@ CASE: dict[tuple[str, str], Row] = {
     ("step", "interference"): real(
         "step(1)", "fit", "1e-3", "length", lower=0.0, needed=": needs a target: normal_force or approach"
     ),
+    ("step", "normal_intensity"): real(
+        "step(1)",
+        "edge",
+        "0.02",
+        "force/length^(5/2)",
+        lower=0.0,
+        needed=": needs a target: normal_force or",
+        refused={"1e100": "is too large beside the normal_intensity"},
+    ),
+    ("step", "shear_intensity"): real("step(2)", "edge", "1e-4", "force/length^(3/2)", needed=": needs a target: normal_force or"),
     ("step", "friction"): logical("step(2)", "cylinder", ".true.", refused={".false.": NO_FRICTION, "f": NO_FRICTION}),
     ("step", "cycles"): whole("step(3)", "cycles", "2", 0, 1000000, refused={"0": "has no effect without cycles of 2 or more"}),
     ("step", "steady_tolerance"): positive("step(3)", "cycles", "1e-6"),
@@ -477,6 +503,16 @@ CASE: dict[tuple[str, str], Row] = {
     ("history", "lower_bulk_stress"): real("history", "history", "1e-3", "force/length^2", is_list=True),
     ("history", "upper_bulk_stress"): real("history", "history of elastic bodies", "1e-3", "force/length^2", is_list=True),
     ("history", "interference"): real("history", "history of a fit", "2e-3", "length", lower=0.0, is_list=True),
+    ("history", "normal_intensity"): real(
+        "history",
+        "history of an edge",
+        "0.02",
+        "force/length^(5/2)",
+        lower=0.0,
+        is_list=True,
+        refused={"1e100": "is too large beside the normal_intensity"},
+    ),
+    ("history", "shear_intensity"): real("history", "history of an edge", "1e-4", "force/length^(3/2)", is_list=True),
     ("history", "period"): whole("history", "history", "2", 2, 1000000, refused={"1000000": "must be at most 2, the number of"}),
     ("history", "cycles"): whole("history", "history", "2", 1, 1000000, refused={"1": "has no effect without cycles of 2 or more"}),
     ("history", "steady_tolerance"): positive("history", "history", "1e-6"),

@@ -26,8 +26,8 @@ module mfv_draft
    character(*), parameter :: line_ends = achar(10)//achar(13)
    !> Keys of one group that exclude each other; the last row with a key applies.
    character(*), parameter :: alternatives_of(motion_count + 4) = &
-        [character(56) :: motions(:motion_count)%force_key//' '//motions(:motion_count)%key, &
-         'normal_force approach normal_intensity', 'tangential_force force_ratio shift shear_intensity', &
+                              [character(56) :: motions(:motion_count)%force_key//' '//motions(:motion_count)%key, &
+                                   'normal_force approach normal_intensity', 'tangential_force force_ratio shift shear_intensity', &
                                                  'shear_modulus youngs_modulus', 'half_width half_angle']
 
    !> An error of a call, and the key that was named: setting that key again clears it.

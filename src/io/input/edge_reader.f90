@@ -91,6 +91,9 @@ contains
          if (allocated(error)) return
          step%control(motion_approach) = control_force
          targets(motion_approach, :) = edge%normal_force(normal)
+         if (any(targets(motion_approach, :) > huge(1.0_wp))) &
+            call complain('normal_intensity', 'is too large beside the normal_intensity of the body')
+         if (allocated(error)) return
       end if
       if (.not. allocated(shear)) return
       if (step%control(motion_shift) /= control_keep) then
