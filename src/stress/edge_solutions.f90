@@ -16,18 +16,12 @@ module mfv_edge_solutions
    implicit none
    private
    public :: find_solved_distance, discrete_over_exact, graded_solution_type, new_graded_solution, least_power, most_power, &
-             asymptote_type, root_asymptote, singular_asymptote
+             root_factor, find_singular_factor
 
    !> Exponents for which the solutions are tabulated.
    real(wp), parameter :: least_power = 0.29_wp, most_power = 0.71_wp
    !> Exact tractions are the distance to the power m - 1, m and m + 1. Nodes, from 0, to which solutions are tabulated.
    integer, parameter :: terms = 3, most_tabulated = 4
-
-   !> The exact tractions next to an edge whose discrete ones are known: factor of the leading power of the distance from the edge
-   !> and of the next one, in units of the interval, or of the graded solution.
-   type :: asymptote_type
-      real(wp) :: leading = 0.0_wp, next = 0.0_wp
-   end type asymptote_type
 
    !> Discrete tractions of the outermost unequal intervals; `unit`: their total width, length.
    type :: graded_solution_type
@@ -67,32 +61,30 @@ contains
       if (found) distance = edge
    end subroutine find_solved_distance
 
-   !> Tractions a s^power + b s^(power + 1) at the distance s from their edge, which may lie anywhere near the outermost node, from
-   !> those of the outermost three nodes, outermost first: units of the interval.
-   pure type(asymptote_type) function root_asymptote(tractions, power) result(asymptote)
+   !> Factor a of tractions a s^power + b s^(power + 1) at the distance s from their edge, which may lie anywhere near the outermost
+   !> node, from those of the outermost three nodes, outermost first: units of the interval.
+   pure real(wp) function root_factor(tractions, power) result(factor)
       real(wp), intent(in) :: tractions(0:terms - 1), power
       real(wp) :: offset, columns(terms, terms)
 
       call find_columns(power, offset, columns)
-      asymptote = root_of(factors_of(columns, tractions), power)
-   end function root_asymptote
+      factor = root_of(factors_of(columns, tractions), power)
+   end function root_factor
 
-   !> Tractions a s^(power - 1) + b s^power at the distance s from an edge, of zones whose nodes are all held: from those of the
-   !> outermost three nodes. `offset`: where the edge of the discrete solution is, in intervals outwards from the outermost node:
-   !> k(j) is the power m - 1 of j + offset there, half an interval before that of g(j) (docs/theory.md: s = m).
-   pure subroutine singular_asymptote(tractions, power, asymptote, offset)
+   !> Factor a of tractions a s^(power - 1) + b s^power at the distance s from an edge, of zones whose nodes are all held: from those
+   !> of the outermost three nodes. `offset`: where the edge of the discrete solution is, in intervals outwards from the outermost
+   !> node: k(j) is the power m - 1 of j + offset there, half an interval before that of g(j) (docs/theory.md: s = m).
+   pure subroutine find_singular_factor(tractions, power, factor, offset)
       real(wp), intent(in) :: tractions(0:terms - 1), power
-      type(asymptote_type), intent(out) :: asymptote
-      real(wp), intent(out) :: offset
+      real(wp), intent(out) :: factor, offset
       real(wp), parameter :: half = 0.5_wp
       real(wp) :: columns(terms, terms), factors(terms)
 
       call find_columns(power, offset, columns)
       factors = factors_of(columns, tractions)
       offset = offset - half
-      asymptote = asymptote_type(factors(1) + half*power*factors(2) + 0.5_wp*half**2*power*(power + 1.0_wp)*factors(3), &
-                                 factors(2) + half*(power + 1.0_wp)*factors(3))
-   end subroutine singular_asymptote
+      factor = factors(1) + half*power*factors(2) + 0.5_wp*half**2*power*(power + 1.0_wp)*factors(3)
+   end subroutine find_singular_factor
 
    !> The three solutions at the outermost three nodes.
    pure subroutine find_columns(power, offset, columns)
@@ -104,12 +96,11 @@ contains
       columns = reshape([k(:terms - 1), g(:terms - 1), h(:terms - 1)], [terms, terms])
    end subroutine find_columns
 
-   !> Both factors at the edge itself, from those of the powers about a place near it.
-   pure type(asymptote_type) function root_of(factors, power) result(asymptote)
+   !> The factor at the edge itself, from those of the powers about a place near it.
+   pure real(wp) function root_of(factors, power)
       real(wp), intent(in) :: factors(terms), power
 
-      asymptote%next = factors(3)
-      asymptote%leading = factors(2) - (power + 1.0_wp)*factors(3)*shift_of_edge(factors, power)
+      root_of = factors(2) - (power + 1.0_wp)*factors(3)*shift_of_edge(factors, power)
    end function root_of
 
    !> Factors of the columns of a matrix in `values`, by Cramer's rule.
@@ -314,22 +305,22 @@ contains
       end associate
    end subroutine edge_beyond
 
-   !> As root_asymptote, from the tractions of three or more intervals, outermost first; in units of length_unit.
-   pure type(asymptote_type) function graded_root(self, tractions) result(asymptote)
+   !> As root_factor, from the tractions of three or more intervals, outermost first; in units of length_unit.
+   pure real(wp) function graded_root(self, tractions) result(factor)
       class(graded_solution_type), intent(in) :: self
       real(wp), intent(in) :: tractions(:)
 
-      asymptote = root_of(factors_of(self%discrete(:terms, :), tractions(:terms)), self%power)
+      factor = root_of(factors_of(self%discrete(:terms, :), tractions(:terms)), self%power)
    end function graded_root
 
-   !> As singular_asymptote; the edge of the discrete solution is the outer end of the outermost interval.
-   pure type(asymptote_type) function graded_singular(self, tractions) result(asymptote)
+   !> As find_singular_factor; the edge of the discrete solution is the outer end of the outermost interval.
+   pure real(wp) function graded_singular(self, tractions) result(factor)
       class(graded_solution_type), intent(in) :: self
       real(wp), intent(in) :: tractions(:)
       real(wp) :: factors(terms)
 
       factors = factors_of(self%discrete(:terms, :), tractions(:terms))
-      asymptote = asymptote_type(factors(1), factors(2))
+      factor = factors(1)
    end function graded_singular
 
    !> The length that is 1 in the factors of this solution.

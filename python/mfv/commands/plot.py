@@ -32,6 +32,7 @@ examples:
                                       draw the state after step 2 as a PDF
   mfv plot shear_cycles.h5 --cycles
                                       draw the hysteresis loop and the dissipation over x
+  mfv plot fretting.h5 --edges        draw the tractions next to the edges
   mfv plot study.nc --column lower_tension --over friction%mu
                                       draw a column of a study over one of its axes
 """
@@ -58,6 +59,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="draw the cycles: hysteresis loop, its non-linear part, dissipation of the last cycle over x",
     )
+    kind.add_argument(
+        "--edges",
+        action="store_true",
+        help="draw the tractions next to the left and right edge of the contact, with their asymptotes and slip zones",
+    )
     parser.add_argument("--over", metavar="AXIS", help="of a study: the axis (the one with most values by default)")
     parser.add_argument("--body", choices=("lower", "upper"), help="with --stress: inside which body (lower by default)")
     parser.add_argument(
@@ -75,8 +81,8 @@ def run(options: argparse.Namespace) -> None:
         raise ValueError("--body has no effect without --stress; add --stress NAME or remove --body")
     if options.axes is not None and options.stress is None:
         raise ValueError("--axes has no effect without --stress; add --stress NAME or remove --axes")
-    if options.step is not None and options.cycles:
-        raise ValueError("--step has no effect with --cycles; remove one of them")
+    if options.step is not None and (options.cycles or options.edges):
+        raise ValueError(f"--step has no effect with {'--cycles' if options.cycles else '--edges'}; remove one of them")
     if is_table(options.file):
         _draw_study(options)
         return
@@ -87,11 +93,17 @@ def run(options: argparse.Namespace) -> None:
     name = f"{options.file.stem}_{options.stress}_{body}" if options.stress else options.file.stem
     if options.cycles:
         name += "_cycles"
+    if options.edges:
+        name += "_edges"
     output = target(options.output, options.file.with_name(f"{name}.png"), PICTURES, [options.file])
     if options.stress:
         picture = plot.stress_figure(result, options.stress, body, options.step, options.axes or "normalised")
     elif options.cycles:
         picture = plot.cycles_figure(result)
+    elif options.edges:
+        from .. import edges_figure
+
+        picture = edges_figure.figure(result)
     else:
         picture = plot.figure(result, options.step)
     with written(output) as part:
@@ -105,8 +117,8 @@ def _draw_study(options: argparse.Namespace) -> None:
 
     from ..studies.figure import figure
 
-    if options.stress or options.cycles or options.step is not None:
-        raise ValueError(f"{options.file}: the table of a study has no --stress, --cycles or --step; use --column and --over")
+    if options.stress or options.cycles or options.edges or options.step is not None:
+        raise ValueError(f"{options.file}: the table of a study has no --stress, --cycles, --edges or --step; use --column and --over")
     with xarray.open_dataset(options.file, engine="h5netcdf") as table:
         picture = figure(table, options.column, options.over)
     name = f"{options.file.stem}_{options.column}.png" if options.column else f"{options.file.stem}.png"

@@ -83,21 +83,26 @@ contains
       end associate
    end function slip_zones_of
 
-   !> Exponents of the pressure at the edges of a patch, and its intensities at corners. Pressures of different bodies that stick
-   !> oscillate at a corner: NaN.
+   !> Exponents of the pressure at the edges of a patch, and its intensities at corners. Of different bodies whose outermost node
+   !> sticks the edge is not known: the pressure oscillates at a corner, and elsewhere there is a slip zone without a node.
    subroutine add_exponents(path, patch, edges)
       type(contact_path_type), intent(in) :: path
       type(patch_type), intent(in) :: patch
       type(edge_field_type), intent(inout) :: edges(2)
-      logical :: ends(2), oscillates(2)
+      logical :: ends(2), unknown(2)
       real(wp) :: powers(2)
 
       ends = [patch%left_ends, patch%right_ends]
       powers = [patch%left_power, patch%right_power]
-      oscillates = ends .and. holds(path%state%status([patch%first, patch%last])) .and. is_coupled(path)
-      where (.not. oscillates) edges%exponent = merge(powers - 1.0_wp, powers, ends)
+      unknown = holds(path%state%status([patch%first, patch%last])) .and. is_coupled(path)
+      edges%exponent = merge(powers - 1.0_wp, powers, ends)
       if (any(ends)) edges%corner = singular_intensities(path%model, path%state%fields%pressure, patch, powers, ends)
-      where (.not. ends .or. oscillates) edges%corner = ieee_value(1.0_wp, ieee_quiet_nan)
+      where (.not. ends .or. unknown) edges%corner = ieee_value(1.0_wp, ieee_quiet_nan)
+      where (unknown)
+         edges%exponent = edges%corner
+         edges%normal = edges%corner
+         edges%reach = edges%corner
+      end where
    end subroutine add_exponents
 
    !> Whether pressure and shear of nodes that stick depend on each other next to an edge.

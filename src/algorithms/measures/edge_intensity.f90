@@ -9,8 +9,8 @@ module mfv_edge_intensity
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
-   use mfv_edge_solutions, only: asymptote_type, graded_solution_type, least_power, most_power, new_graded_solution, &
-                                 root_asymptote, singular_asymptote
+   use mfv_edge_solutions, only: find_singular_factor, graded_solution_type, least_power, most_power, new_graded_solution, &
+                                 root_factor
    use mfv_kinds, only: wp
    use mfv_zone_edges, only: has_known_error, patch_type
    implicit none
@@ -25,7 +25,7 @@ module mfv_edge_intensity
 contains
 
    !> The pressure at the left (`side` -1) or right (1) edge of a patch where it vanishes: `intensity` K_N, force/length^(5/2), and
-   !> `reach`, length, the distance at which the next term of its series is a tenth of the first. NaN at sharp corners, with fewer
+   !> `reach`, length, the distance at which the pressure differs from that by a tenth. NaN at sharp corners, with fewer
    !> than three nodes, and where the equations are not those of mfv_edge_solutions.
    subroutine find_root_intensity(model, state, patch, side, intensity, reach)
       type(contact_model_type), intent(in) :: model
@@ -33,10 +33,7 @@ contains
       type(patch_type), intent(in) :: patch
       integer, intent(in) :: side
       real(wp), intent(out) :: intensity, reach
-      !> Part of the first term.
-      real(wp), parameter :: small = 0.1_wp
-      type(asymptote_type) :: asymptote
-      real(wp) :: unit, power
+      real(wp) :: factor, unit, power
 
       intensity = ieee_value(1.0_wp, ieee_quiet_nan)
       reach = intensity
@@ -47,12 +44,13 @@ contains
             call solve_graded()
          else
             unit = model%width(outermost(patch, side))
-            asymptote = root_asymptote(pressure(:samples), power)
+            factor = root_factor(pressure(:samples), power)
          end if
       end associate
-      if (.not. asymptote%leading > 0.0_wp) return
-      intensity = asymptote%leading/unit**power*half_length(patch)**(power - 0.5_wp)
-      if (abs(asymptote%next) > 0.0_wp) reach = small*unit*asymptote%leading/abs(asymptote%next)
+      if (.not. factor > 0.0_wp) return
+      intensity = factor/unit**power
+      reach = reach_of(model, state%fields%pressure/intensity, patch, side, power)
+      intensity = intensity*half_length(patch)**(power - 0.5_wp)
 
    contains
 
@@ -61,9 +59,43 @@ contains
 
          solution = graded_at(model, patch, side, power)
          unit = solution%length_unit()
-         asymptote = solution%graded_root(inwards(state%fields%pressure, patch, side))
+         factor = solution%graded_root(inwards(state%fields%pressure, patch, side))
       end subroutine solve_graded
    end subroutine find_root_intensity
+
+   !> Distance from an edge, length, at which the `pressure`, over its intensity, shape (nodes), differs from s^power by a tenth;
+   !> NaN if it does not in the outer half of the patch. On unequal intervals pressures are means. The outermost nodes have the
+   !> largest discretisation error and are left out.
+   pure real(wp) function reach_of(model, pressure, patch, side, power) result(reach)
+      type(contact_model_type), intent(in) :: model
+      real(wp), intent(in) :: pressure(:), power
+      type(patch_type), intent(in) :: patch
+      integer, intent(in) :: side
+      real(wp), parameter :: small = 0.1_wp
+      integer, parameter :: left_out = 2
+      real(wp), allocatable :: s(:), half(:), rest(:)
+      integer :: nodes, i
+
+      reach = ieee_value(1.0_wp, ieee_quiet_nan)
+      nodes = patch%last - patch%first + 1
+      s = abs(inwards(model%arc, patch, side, nodes) - merge(patch%right, patch%left, side > 0))
+      half = 0.5_wp*inwards(model%width, patch, side, nodes)
+      if (.not. allocated(model%scene%mesh%ends)) half = 0.0_wp
+      rest = abs(inwards(pressure, patch, side, nodes)/mean_power(s, half, power) - 1.0_wp)
+      i = left_out + findloc(rest(left_out + 1:) > small, .true., dim=1)
+      if (i < left_out + 2) return
+      if (s(i) > half_length(patch)) return
+      reach = s(i - 1) + (s(i) - s(i - 1))*(small - rest(i - 1))/(rest(i) - rest(i - 1))
+   end function reach_of
+
+   !> Mean of s**power from s - half to s + half.
+   elemental real(wp) function mean_power(s, half, power)
+      real(wp), intent(in) :: s, half, power
+
+      mean_power = s**power
+      if (half > 0.0_wp) mean_power = ((s + half)**(power + 1.0_wp) - max(s - half, 0.0_wp)**(power + 1.0_wp))/ &
+                                      (2.0_wp*half*(power + 1.0_wp))
+   end function mean_power
 
    !> Intensities at the left and right edge of a patch, force/length^(3/2), of a `traction`, force/length^2, shape (nodes), that
    !> grows as the distance to the `powers` less one (a half, but for slip with full coupling): the pressure at corners, and
@@ -75,8 +107,7 @@ contains
       logical, intent(in) :: singular(2)
       real(wp) :: intensities(2)
       integer, parameter :: sides(2) = [-1, 1]
-      type(asymptote_type) :: asymptote
-      real(wp) :: outwards(2), offset, unit
+      real(wp) :: outwards(2), factor, offset, unit
       integer :: i
 
       intensities = 0.0_wp
@@ -93,11 +124,11 @@ contains
                outwards(i) = 0.5_wp*model%width(node)
             else
                unit = model%width(node)
-               call singular_asymptote(values(:samples), powers(i), asymptote, offset)
+               call find_singular_factor(values(:samples), powers(i), factor, offset)
                outwards(i) = offset*unit
             end if
          end associate
-         intensities(i) = asymptote%leading*unit**(1.0_wp - powers(i))*half_length(patch)**(powers(i) - 0.5_wp)
+         intensities(i) = factor*unit**(1.0_wp - powers(i))*half_length(patch)**(powers(i) - 0.5_wp)
       end do
       if (all(singular)) call move_edges(model, patch, outwards, intensities)
 
@@ -109,7 +140,7 @@ contains
 
          solution = graded_at(model, patch, sides(i), powers(i))
          unit = solution%length_unit()
-         asymptote = solution%graded_singular(values)
+         factor = solution%graded_singular(values)
       end subroutine solve_graded
    end function singular_intensities
 
@@ -151,15 +182,18 @@ contains
       solution = new_graded_solution(inwards(model%width, patch, side), power)
    end function graded_at
 
-   !> Values of the outermost nodes of a patch from its left (`side` -1) or right (1) edge inwards, `most_intervals` at most.
-   pure function inwards(values, patch, side)
+   !> Values of the outermost nodes of a patch from its left (`side` -1) or right (1) edge inwards, `most` (or 32) at most.
+   pure function inwards(values, patch, side, most)
       real(wp), intent(in) :: values(:)
       type(patch_type), intent(in) :: patch
       integer, intent(in) :: side
+      integer, intent(in), optional :: most
       real(wp), allocatable :: inwards(:)
       integer :: number
 
-      number = min(patch%last - patch%first + 1, most_intervals)
+      number = most_intervals
+      if (present(most)) number = most
+      number = min(patch%last - patch%first + 1, number)
       associate (edge => outermost(patch, side))
          inwards = values(edge:edge - side*(number - 1):-side)
       end associate
