@@ -28,6 +28,7 @@ PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$root/build/release/lib/libmf
 draw sheared.h5 -o "$pictures/tutorial_shear.png"
 draw fretting_pad.h5 --cycles -o "$pictures/tutorial_cycles.png"
 draw fretting_pad.h5 --stress von_mises -o "$pictures/tutorial_stress.png"
+draw fretting_pad.h5 --edges -o "$pictures/edges.png"
 for example in two_cylinders pin_in_bore; do
   "$bin/mfv_stress" "$example.h5" >/dev/null
   draw "$example.h5" --stress von_mises -o "$pictures/${example}_stress.png"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
@@ -38,7 +40,7 @@ def edge(result: Result, side: str, ax: Axes) -> Axes:
     distance = sign * (result.mesh.arc - place)
     shown = (distance > 0.0) & (distance < 0.5 * float(seen.contact_length)) & (state.status != NodeStatus.OPEN)
     s = np.geomspace(0.5 * distance[shown].min(), distance[shown].max(), 200)
-    points = {"linestyle": "none", "marker": "o", "markersize": 3.0, "markeredgewidth": 0.0}
+    points: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 3.0, "markeredgewidth": 0.0}
     ax.plot(distance[shown], state.pressure[shown], color=plot.NUMBERS, label="pressure $p$", **points)
     ax.plot(s, seen[f"{side}_normal_intensity"] * np.sqrt(s), color=plot.NUMBERS, linewidth=0.9, label=r"$K_N\sqrt{s}$")
     if has_friction(result):
@@ -55,6 +57,6 @@ def edge(result: Result, side: str, ax: Axes) -> Axes:
         if seen.get(f"{side}_{name}", 0.0) > 0.0:
             ax.axvline(seen[f"{side}_{name}"], color=plot.SURFACE, linewidth=0.9, linestyle=style, label=label)
     lowest = np.min(state.pressure[shown])
-    ax.set(xscale="log", yscale="log", xlim=(s[0], s[-1]), ylim=(0.1 * lowest, 2.0 * np.max(state.pressure[shown])))
+    ax.set(xscale="log", yscale="log", xlim=(s[0], s[-1]), ylim=(0.5 * lowest, 2.0 * np.max(state.pressure[shown])))
     ax.set_xlabel(plot._label(f"distance from the {side} edge", "s", result.mesh.unit("x")))
     return ax

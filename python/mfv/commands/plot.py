@@ -118,7 +118,9 @@ def _draw_study(options: argparse.Namespace) -> None:
     from ..studies.figure import figure
 
     if options.stress or options.cycles or options.edges or options.step is not None:
-        raise ValueError(f"{options.file}: the table of a study has no --stress, --cycles, --edges or --step; use --column and --over")
+        raise ValueError(
+            f"{options.file}: the table of a study has no --stress, --cycles, --edges or --step; use --column and --over"
+        )
     with xarray.open_dataset(options.file, engine="h5netcdf") as table:
         picture = figure(table, options.column, options.over)
     name = f"{options.file.stem}_{options.column}.png" if options.column else f"{options.file.stem}.png"

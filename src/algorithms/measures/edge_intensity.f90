@@ -65,14 +65,14 @@ contains
 
    !> Distance from an edge, length, at which the `pressure`, over its intensity, shape (nodes), differs from s^power by a tenth;
    !> NaN if it does not in the outer half of the patch. On unequal intervals pressures are means. The outermost nodes have the
-   !> largest discretisation error and are left out.
+   !> largest discretisation error and are omitted.
    pure real(wp) function reach_of(model, pressure, patch, side, power) result(reach)
       type(contact_model_type), intent(in) :: model
       real(wp), intent(in) :: pressure(:), power
       type(patch_type), intent(in) :: patch
       integer, intent(in) :: side
       real(wp), parameter :: small = 0.1_wp
-      integer, parameter :: left_out = 2
+      integer, parameter :: omitted = 2
       real(wp), allocatable :: s(:), half(:), rest(:)
       integer :: nodes, i
 
@@ -82,8 +82,8 @@ contains
       half = 0.5_wp*inwards(model%width, patch, side, nodes)
       if (.not. allocated(model%scene%mesh%ends)) half = 0.0_wp
       rest = abs(inwards(pressure, patch, side, nodes)/mean_power(s, half, power) - 1.0_wp)
-      i = left_out + findloc(rest(left_out + 1:) > small, .true., dim=1)
-      if (i < left_out + 2) return
+      i = omitted + findloc(rest(omitted + 1:) > small, .true., dim=1)
+      if (i < omitted + 2) return
       if (s(i) > half_length(patch)) return
       reach = s(i - 1) + (s(i) - s(i - 1))*(small - rest(i - 1))/(rest(i) - rest(i - 1))
    end function reach_of
@@ -145,7 +145,7 @@ contains
    end function singular_intensities
 
    !> Intensities at the edges of a patch from those of the discrete solution, whose edges lie `outwards` of the outermost nodes,
-   !> lengths. Tractions (m + d (x - x0))/sqrt((x - l)(r - x)), x0 the middle, have the resultant pi m and the displacement pi A d x:
+   !> lengths. Tractions (m + d (x - x0))/sqrt((x - l)(r - x)), x0 the middle, have the resultant pi m and the displacement A d x:
    !> m and d are those of the loads and do not depend on where the edges are.
    pure subroutine move_edges(model, patch, outwards, intensities)
       type(contact_model_type), intent(in) :: model
