@@ -72,8 +72,8 @@ contains
    end function root_factor
 
    !> Factor a of tractions a s^(power - 1) + b s^power at the distance s from an edge of a zone whose nodes are all held, from
-   !> those of the outermost three nodes. `offset`: where the edge of the discrete solution is, in intervals outwards from the outermost
-   !> node: k(j) is the power m - 1 of j + offset there, half an interval before that of g(j) (docs/theory.md: s = m).
+   !> those of the outermost three nodes. `offset`: where the edge of the discrete solution is, in intervals outwards from the
+   !> outermost node: k(j) is the power m - 1 of j + offset there, half an interval before that of g(j) (docs/theory.md: s = m).
    pure subroutine find_singular_factor(tractions, power, factor, offset)
       real(wp), intent(in) :: tractions(0:terms - 1), power
       real(wp), intent(out) :: factor, offset
