@@ -36,8 +36,8 @@ def edge(result: Result, side: str, ax: Axes) -> Axes:
     """The `side` ('left' or 'right') edge of a contact in axes of its own."""
     seen, state = result.observables, result.state
     sign = 1.0 if side == "left" else -1.0
-    place = np.interp(float(result.summary[f"contact_{side}"]), result.mesh.x, result.mesh.arc)
-    distance = sign * (result.mesh.arc - place)
+    arc = result.mesh.get("arc", result.mesh.x)  # along the surface of a circle
+    distance = sign * (arc - np.interp(float(result.summary[f"contact_{side}"]), result.mesh.x, arc))
     shown = (distance > 0.0) & (distance < 0.5 * float(seen.contact_length)) & (state.status != NodeStatus.OPEN)
     s = np.geomspace(0.5 * distance[shown].min(), distance[shown].max(), 200)
     points: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 3.0, "markeredgewidth": 0.0}

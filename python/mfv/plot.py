@@ -2,7 +2,7 @@
 
 `pressure`, `shear`, `surfaces`, `loop`, `nonlinear_loop`, `friction_work`, `turning`, `rolling`, `tension`, `surface_stress`,
 `stress_contours` and `parameter_contours` draw into axes of yours, or new ones, and return them; `figure` makes a picture of what a
-result has, `cycles_figure` one of its cycles, `stress_figure` one of the stresses inside a body.
+result has, `cycles_figure` one of its cycles, `edges_figure` one of its edges, `stress_figure` one of the stresses inside a body.
 """
 
 from __future__ import annotations
@@ -156,6 +156,16 @@ def cycles_figure(result: Result) -> Figure:
     if not panels:
         raise ValueError("no cycles to draw: the result has neither a history nor dissipation by friction")
     return _panels_in_a_row(panels, result, None, _cycle_caption(result))
+
+
+def edges_figure(result: Result) -> Figure:
+    """A picture of the tractions next to the left and right edge of the contact, with their asymptotes and slip zones.
+
+    Raises ValueError without intensities.
+    """
+    from . import edges_figure as picture  # here: it takes its style from this module
+
+    return picture.figure(result)
 
 
 def _check_cycles(result: Result) -> None:

@@ -222,3 +222,21 @@ def test_mirror_image() -> None:
         sign = -1.0 if name == "shear_intensity" else 1.0
         for side, opposite in (("left", "right"), ("right", "left")):
             assert here[f"{side}_{name}"] == pytest.approx(sign * there[f"{opposite}_{name}"], rel=1e-8)
+
+
+def test_picture() -> None:
+    """Both edges in panels of their own; none where a punch ends."""
+    axes = mfv.plot.edges_figure(observed(Step(normal_force=P), Step(tangential_force=Q))).axes
+    assert [ax.get_xlabel().split("$")[0] for ax in axes] == ["distance from the left edge ", "distance from the right edge "]
+    with pytest.raises(ValueError, match="no edges to draw"):
+        mfv.plot.edges_figure(observed(Step(normal_force=P), upper=Body.flat_punch(0.05)))
+
+
+def test_every_step_of_a_case() -> None:
+    """The intensities of each state, as it is reached."""
+    scene = Scene(PLANE, CYLINDER, friction=Friction.coulomb(MU), mesh=Mesh(nodes=201, gap="parabolic"))
+    with mfv.Case(scene) as case:
+        for force in (0.0, Q, -Q):
+            case.advance(normal_force=P, tangential_force=force)
+            before = case.result().observables.get("left_shear_intensity", 0.0)
+        assert before == pytest.approx(-2.0 * K_T, rel=1e-4)

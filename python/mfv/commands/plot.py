@@ -101,9 +101,7 @@ def run(options: argparse.Namespace) -> None:
     elif options.cycles:
         picture = plot.cycles_figure(result)
     elif options.edges:
-        from .. import edges_figure
-
-        picture = edges_figure.figure(result)
+        picture = plot.edges_figure(result)
     else:
         picture = plot.figure(result, options.step)
     with written(output) as part:
