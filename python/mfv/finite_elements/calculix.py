@@ -53,7 +53,9 @@ def read_frd(path: Path, surface: str | None, mesh: Path | None, columns: Column
     result = _frd(path)
     missing = [number for number in numbers if number not in result.nodes]
     if missing:
-        raise ValueError(f"{path}: does not have node {missing[0]} of {surface}; give its own input deck as mesh, and use OUTPUT=2D")
+        raise ValueError(
+            f"{path}: does not have node {missing[0]} of {surface}; give its own input deck as mesh, and use OUTPUT=2D"
+        )
     times, arrays = _arrays(result.blocks, numbers)
     source = f"{path}, {surface}"
     fields = chosen(arrays, source, columns)
@@ -190,5 +192,7 @@ def _forces(path: Path, surface: str | None) -> list[tuple[float, dict[int, list
             frames[-1][1][int(words[0])] = [float(word) for word in words[1:]]
     if not frames or not frames[0][1]:
         advice = "print them: *NODE PRINT, NSET=... and RF"
-        raise ValueError(f"{path}: no nodal forces of a set '{surface}'; there are those of {', '.join(names) or 'no set'}; {advice}")
+        raise ValueError(
+            f"{path}: no nodal forces of a set '{surface}'; there are those of {', '.join(names) or 'no set'}; {advice}"
+        )
     return frames

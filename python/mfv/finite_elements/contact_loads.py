@@ -10,11 +10,12 @@ from pathlib import Path
 import numpy as np
 
 from .._files import written
+from ..loads import Targets
 from ..scene import History, Step
 from .bulk import Bulk, bulk_stress
 from .edge_fits import Edge, contact_nodes, edge
 from .readers import Name, Source, read_surface
-from .record import Array, Columns
+from .record import Array, Columns, Places
 from .traces import Axes, Traces, traces_of
 
 #: Nodes for the bulk stress are at distances from the contact between these multiples of its half-width.
@@ -80,12 +81,17 @@ class ContactLoads:
         """A `Step` for every time, with friction. Raises ValueError if there is no contact."""
         self._check_contact()
         columns = {name: values for name, values in self.table(moment=moment).items() if name != "time"}
-        return [Step(**{name: float(values[at]) for name, values in columns.items()}) for at in range(len(columns["normal_force"]))]
+        targets: list[Targets] = [{name: float(value) for name, value in zip(columns, row)} for row in zip(*columns.values())]  # type: ignore[misc]
+        return [Step(**target) for target in targets]
 
     def write(self, path: str | os.PathLike[str], *, moment: bool = False) -> None:
         """Write the table as a text that `&history file='...'` reads. Raises OSError, ValueError if there is no contact."""
         self._check_contact()
-        _write(Path(path), f"# {self.source}: loads per unit thickness, x = 0 at {self.centre:.9g} along the surface", self.table(moment=moment))
+        _write(
+            Path(path),
+            f"# {self.source}: loads per unit thickness, x = 0 at {self.centre:.9g} along the surface",
+            self.table(moment=moment),
+        )
 
     def write_edges(self, path: str | os.PathLike[str]) -> None:
         """Write the edges with K_N, K_T and their errors as a text with a comma between columns. Raises OSError."""
@@ -164,7 +170,9 @@ def from_fe(
         beside = read_surface(source, opposite, mesh, columns, times)
         stresses = {key: values for key, values in beside.fields.items() if key.startswith("stress")}
         if not stresses:
-            raise ValueError(f"{beside.source}: has no stresses (stress_xx, stress_yy, stress_xy), which the opposite surface is for")
+            raise ValueError(
+                f"{beside.source}: has no stresses (stress_xx, stress_yy, stress_xy), which the opposite surface is for"
+            )
         other = _scaled(traces_of(beside._replace(fields=stresses), of_other), length_scale, force_scale)
     return _loads(traces, other, None if centre is None else centre * length_scale, bulk_range)
 
@@ -219,7 +227,9 @@ def _loads(traces: Traces, other: Traces | None, centre: float | None, reach: tu
         )
     pulled = int(np.argmin(P))
     if P[pulled] < -1e-6 * P[fullest]:
-        raise ValueError(f"{traces.source}: the forces pull the bodies apart at time {traces.times[pulled]:g}; are these of the contact alone?")
+        raise ValueError(
+            f"{traces.source}: the forces pull the bodies apart at time {traces.times[pulled]:g}; are these of the contact alone?"
+        )
     pressure, shear = traces.tractions or (traces.normal / traces.width, traces.shear / traces.width)
     left, right = (edge(traces.x, traces.width, pressure, shear, traces.tractions is not None, side) for side in (-1, 1))
     loaded = contact_nodes(pressure[fullest])
@@ -254,19 +264,25 @@ def _moment(traces: Traces, P: Array, Q: Array, x: float, y: float) -> Array:
 
 
 def _notes(
-    traces: Traces, other: Traces | None, bodies: dict[str, Bulk | None], loaded: Array, left: Edge, right: Edge, fullest: int
+    traces: Traces, other: Traces | None, bodies: dict[str, Bulk | None], loaded: Places, left: Edge, right: Edge, fullest: int
 ) -> list[str]:
     """What a user should know."""
     notes = []
     if loaded[0] == 0 or loaded[-1] == len(traces.x) - 1:
-        notes.append("the contact reaches the end of the node set: a complete contact, or the set is too short; K_N and K_T are unknown there")
+        notes.append(
+            "the contact reaches the end of the node set: a complete contact, or the set is too short; K_N and K_T are unknown there"
+        )
     elif not np.isfinite(left.K_N[fullest] + right.K_N[fullest]):
-        notes.append(f"K_N and K_T need an incomplete edge and at least 5 nodes in contact; here are {len(loaded)} where P is largest")
+        notes.append(
+            f"K_N and K_T need an incomplete edge and at least 5 nodes in contact; here are {len(loaded)} where P is largest"
+        )
     if len(loaded) and not np.all(np.diff(loaded) == 1):
         notes.append("the contact has gaps between nodes: edges are the outermost ones")
     for of_body in (traces, other):
         if of_body is not None and of_body.stress is not None and bodies.get(of_body.body) is None:
-            notes.append(f"no bulk stress of the {of_body.body} body: fewer than 2 nodes with stresses lie beside the contact (bulk_range)")
+            notes.append(
+                f"no bulk stress of the {of_body.body} body: fewer than 2 nodes with stresses lie beside the contact (bulk_range)"
+            )
     return notes
 
 

@@ -12,7 +12,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from .record import Array
+from .record import Array, Places
 
 #: A node is in contact if its pressure is above this fraction of the largest one.
 LOADED = 1.0e-3
@@ -23,7 +23,7 @@ NODES, FARTHEST = (3, 4, 5), 0.8
 
 #: The truncated term of the expansions grows with the square of the number of nodes: with 3, 4 and 5 of them the differences sum up to as
 #: much as the error with 4. For safety:
-SAFETY = 1.5
+SAFETY = 2.0
 
 #: Candidates for the edge at each level of the search, and levels: 2 elements are divided by 10^4.
 _CANDIDATES, _LEVELS = 41, 4
@@ -42,12 +42,14 @@ class Edge(NamedTuple):
 
 
 class _Fit(NamedTuple):
-    x: float
-    K_N: float
-    K_T: float
+    """Edge, K_N and K_T, and what the tractions at the nodes differ from these by: a length and parts of K_N and K_T."""
+
+    values: Array
+    misfit: Array
 
 
-_NONE = _Fit(np.nan, np.nan, np.nan)
+#: An edge, K_N and K_T with their errors, of which none is known.
+_UNKNOWN = (np.nan,) * 6
 
 
 def edge(x: Array, width: Array, pressure: Array, shear: Array, are_samples: bool, side: int) -> Edge:
@@ -61,37 +63,39 @@ def edge(x: Array, width: Array, pressure: Array, shear: Array, are_samples: boo
     return Edge(*rows.T)
 
 
-def contact_nodes(pressure: Array) -> Array:
+def contact_nodes(pressure: Array) -> Places:
     """The places of the nodes in contact at a time, of which the outermost may be just outside."""
     largest = float(pressure.max())
-    return np.nonzero(pressure > LOADED * largest)[0] if largest > 0.0 else np.array([], dtype=int)
+    return np.nonzero(pressure > LOADED * largest)[0] if largest > 0.0 else np.array([], dtype=np.intp)
 
 
 def _at_time(x: Array, basis: _Basis, pressure: Array, shear: Array) -> tuple[float, ...]:
     """Edge, K_N and K_T on the right with their errors, by turns."""
     loaded = contact_nodes(pressure)
     if len(loaded) == 0:
-        return (np.nan,) * 6
+        return _UNKNOWN
     last = int(loaded[-1])
     if last == len(x) - 1 or _is_complete(pressure, loaded):
-        return (float(x[last]), *(np.nan,) * 5)
+        return (float(x[last]), *_UNKNOWN[1:])
     reach = FARTHEST * (x[last] - x[loaded[0]])
     sizes = [size for size in NODES if last - size + 1 >= 1 and x[last] - x[last - size + 1] <= reach]
-    if len(sizes) == 0:
-        return (np.nan,) * 6
+    if len(sizes) < 2:
+        return (float(x[last]), float(x[last + 1] - x[last]), *_UNKNOWN[2:]) if last + 1 < len(x) else _UNKNOWN
     fits = [_fit(x, basis, pressure, shear, last, size) for size in sizes]
-    middle = min(1, len(fits) - 1)
-    errors = SAFETY * np.sum(np.abs(np.diff(np.array(fits), axis=0)), axis=0) if len(fits) > 1 else np.array(_NONE)
-    return tuple(float(value) for pair in zip(fits[middle], errors) for value in pair)
+    values = np.array([fit.values for fit in fits])
+    errors = SAFETY * np.sum(np.abs(np.diff(values, axis=0)), axis=0) + fits[1].misfit
+    if not errors[1] < values[1, 1]:
+        return (float(values[1, 0]), float(errors[0]), *_UNKNOWN[2:])
+    return tuple(float(value) for pair in zip(values[1], errors) for value in pair)
 
 
-def _is_complete(pressure: Array, loaded: Array) -> bool:
+def _is_complete(pressure: Array, loaded: Places) -> bool:
     """Whether the pressure rises towards the right edge, as at a corner: the largest is at one of the last two of many nodes."""
     return len(loaded) > 5 and int(np.argmax(pressure)) >= loaded[-2]
 
 
 def _fit(x: Array, basis: _Basis, pressure: Array, shear: Array, last: int, size: int) -> _Fit:
-    """The edge, K_N and K_T from `size` loaded nodes and the one beyond the last."""
+    """A fit to `size` loaded nodes and the one beyond the last."""
     nodes = np.arange(last - size + 1, last + 2)
     low, high = x[last - 1], x[last + 1]
     for _ in range(_LEVELS):
@@ -102,17 +106,27 @@ def _fit(x: Array, basis: _Basis, pressure: Array, shear: Array, last: int, size
         low, high = candidates[best] - step, candidates[best] + step
     place = candidates[best : best + 1]
     weights = basis.weights(nodes, float(place[0]))
-    _, of_shear = _solved(weights[:, None] * basis.powers(nodes, place, (-0.5, 0.5)), weights * shear[nodes])
-    return _Fit(float(place[0]), float(factors[best, 0]), float(of_shear[0, 0]))
+    weighted = weights * shear[nodes]
+    rest, of_shear = _solved(weights[:, None] * basis.powers(nodes, place, (-0.5, 0.5)), weighted)
+    values = np.array([place[0], factors[best, 0], of_shear[0, 0]])
+    parts = [_part(residuals[best], pressure[nodes]), _part(rest[0], weighted)]
+    misfit = np.array([parts[0] * (x[last] - x[last - 1]), parts[0] * abs(values[1]), parts[1] * abs(values[2])])
+    return _Fit(values, misfit)
+
+
+def _part(residual: float, values: Array) -> float:
+    """A residual as a part of the values."""
+    size = float(np.linalg.norm(values))
+    return float(residual) / size if size > 0.0 else 0.0
 
 
 class _Basis(Protocol):
     """What powers of the distance from the edge are in the values at nodes."""
 
-    def powers(self, nodes: Array, edges: Array, powers: tuple[float, float]) -> Array:
+    def powers(self, nodes: Places, edges: Array, powers: tuple[float, float]) -> Array:
         """Values at nodes of (edge - x)^power inside the contact, (edges, nodes, powers)."""
 
-    def weights(self, nodes: Array, place: float) -> Array:
+    def weights(self, nodes: Places, place: float) -> Array:
         """Weights of the nodes in the fit of the shear traction, which may be infinite at the edge."""
 
 
@@ -122,7 +136,7 @@ class _Averages(NamedTuple):
     x: Array
     width: Array
 
-    def powers(self, nodes: Array, edges: Array, powers: tuple[float, float]) -> Array:
+    def powers(self, nodes: Places, edges: Array, powers: tuple[float, float]) -> Array:
         spaced = np.concatenate([self.x, [2.0 * self.x[-1] - self.x[-2]]])
         places = spaced[nodes[0] - 1 : nodes[-1] + 2]
         inside = np.maximum(edges[:, None, None] - places[None, :, None], 0.0)
@@ -131,7 +145,7 @@ class _Averages(NamedTuple):
         slopes = np.diff(primitive, axis=1) / np.diff(places)[None, :, None]
         return np.asarray(np.diff(slopes, axis=1) / self.width[nodes, None])
 
-    def weights(self, nodes: Array, place: float) -> Array:
+    def weights(self, nodes: Places, place: float) -> Array:
         return np.ones(len(nodes))
 
 
@@ -140,11 +154,11 @@ class _Samples(NamedTuple):
 
     x: Array
 
-    def powers(self, nodes: Array, edges: Array, powers: tuple[float, float]) -> Array:
+    def powers(self, nodes: Places, edges: Array, powers: tuple[float, float]) -> Array:
         distance = edges[:, None, None] - self.x[None, nodes, None]
         return np.where(distance > 0.0, np.maximum(distance, 1e-300) ** np.array(powers), 0.0)
 
-    def weights(self, nodes: Array, place: float) -> Array:
+    def weights(self, nodes: Places, place: float) -> Array:
         return np.asarray(np.sqrt(np.maximum(place - self.x[nodes], 0.0)))
 
 

@@ -133,7 +133,9 @@ def read_exodus(path: Path, surface: str | None, columns: Columns | None) -> Rec
         nodes = _node_set(path, surface, variables)
         names = _texts(variables, "name_nod_var")
         places = [f"vals_nod_var{at}" for at in range(1, len(names) + 1)]
-        arrays = {name: np.asarray(variables[key][:], dtype=float)[:, nodes] for name, key in zip(names, places) if key in variables}
+        arrays = {
+            name: np.asarray(variables[key][:], dtype=float)[:, nodes] for name, key in zip(names, places) if key in variables
+        }
         position = _positions(variables)
         elements = [
             Element(tuple(int(node) - 1 for node in cell), _is_quadratic(str(block.elem_type), block.shape[1], position.shape[1]))

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+#: Places of nodes in an array.
+Places = NDArray[np.intp]
 
 #: Names in results, in lower case and without blanks, dashes, points and underscores, of what a record has. Those of forces may occur
 #: together, such as Abaqus's normal and frictional ones: they are added.

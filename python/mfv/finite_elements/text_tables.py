@@ -18,7 +18,11 @@ from .record import Array, Columns, Record, chosen, on_surface, plain
 #: Names of columns, in lower case: times, sets, nodes and where they are.
 _TIMES = ("time", "t", "total time", "frame")
 _SETS = ("surface", "set", "instance", "part instance name")
-_PLACES = {"node": ("node", "node label", "label"), "x": ("x", "coord-coor1", "coord.coor1", "coor1", "coord1"), "y": ("y", "coord-coor2", "coord.coor2", "coor2", "coord2")}
+_PLACES = {
+    "node": ("node", "node label", "label"),
+    "x": ("x", "coord-coor1", "coord.coor1", "coor1", "coord1"),
+    "y": ("y", "coord-coor2", "coord.coor2", "coor2", "coord2"),
+}
 
 _TIME = re.compile(r"Time\s*=\s*([-+\d.Ee]+)")
 _STEP = re.compile(r"^\s*Step:\s*(.+?)\s*$")
@@ -60,11 +64,17 @@ def _cells_of(path: Path) -> dict[str, list[str]]:
     """The cells of every column by its name without a unit. Raises OSError, InputError, ValueError."""
     rows = read_rows(path, ())
     if not rows.lines:
-        raise ValueError(f"{path}: no rows; needs a line with the names of the columns, such as time,x,pressure,shear, and rows of numbers")
+        raise ValueError(
+            f"{path}: no rows; needs a line with the names of the columns, such as time,x,pressure,shear, and rows of numbers"
+        )
     table = [rows.cells(line) for line in rows.lines]
-    point = (lambda cell: cell.replace(",", ".")) if rows.decimal_comma else (lambda cell: cell)
     names = [bare_name(name) for name in rows.names]
-    return {name: [point(row[at]).strip("\"' ") for row in table] for at, name in enumerate(names)}
+    return {name: [_cell(row[at], rows.decimal_comma) for row in table] for at, name in enumerate(names)}
+
+
+def _cell(cell: str, decimal_comma: bool) -> str:
+    """A cell without quotation marks, with a decimal point."""
+    return (cell.replace(",", ".") if decimal_comma else cell).strip("\"' ")
 
 
 def _numbers(cells: Sequence[str]) -> Array | None:
@@ -107,9 +117,13 @@ def _record(
     first = frames[0]
     for rows in frames:
         if len(rows) != len(first) or (same is not None and not np.array_equal(same[rows], same[first])):
-            raise ValueError(f"{path}: time {times[rows[0]]:g} has other nodes than the first one; every time needs a row for every node")
+            raise ValueError(
+                f"{path}: time {times[rows[0]]:g} has other nodes than the first one; every time needs a row for every node"
+            )
     arrays = {
-        name: np.array([column[rows] for rows in frames]) for name, column in values.items() if name not in ("node", "x", "y", "time")
+        name: np.array([column[rows] for rows in frames])
+        for name, column in values.items()
+        if name not in ("node", "x", "y", "time")
     }
     source = f"{path}, {surface}" if surface else str(path)
     fields = chosen(arrays, source, columns)
@@ -117,7 +131,9 @@ def _record(
     if "x" in values:
         x, y = values["x"][first], values["y"][first] if "y" in values else np.zeros(len(first))
         if len(np.unique(np.column_stack([x, y]), axis=0)) < len(first):
-            raise ValueError(f"{path}: several rows of a time have the same position; every node once, a column time for several times")
+            raise ValueError(
+                f"{path}: several rows of a time have the same position; every node once, a column time for several times"
+            )
         return on_surface(source, np.column_stack([x, y]), [], list(range(len(first))), every, fields)
     if mesh is None or not by_node:
         raise ValueError(f"{path}: has no column x (or COORD.COOR1); add it, or a column node, with the input deck as mesh")
@@ -141,7 +157,9 @@ def read_rpt(path: Path, surface: str | None, mesh: Path | None, columns: Column
     """
     frames = _tables_of(path)
     if not frames:
-        raise ValueError(f"{path}: has no table of nodes (Node Label and values); write it by Report, Field Output, at Unique Nodal")
+        raise ValueError(
+            f"{path}: has no table of nodes (Node Label and values); write it by Report, Field Output, at Unique Nodal"
+        )
     names = frames[0][2]
     if any(frame[2] != names for frame in frames):
         raise ValueError(f"{path}: its tables have different columns; write the same variables at all frames")

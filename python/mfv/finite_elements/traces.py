@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .record import Array, Face, Record
+from .record import Array, Face, Places, Record
 
 #: Forces below this fraction of the largest pressure times the length of the surface are those of rounding: where bodies touch, some programs
 #: have reactions that are 0.
@@ -91,7 +91,7 @@ def _resultants(record: Record, axes: Axes, rotation: tuple[float, float], body:
     return np.column_stack([sine * across - cosine * along, cosine * across + sine * along, moment])
 
 
-def _turned(record: Record, angle: float) -> tuple[Array, Array, tuple[float, float]]:
+def _turned(record: Record, angle: float) -> tuple[Array, Places, tuple[float, float]]:
     """Positions in the axes of the contact, the order of the nodes along it, cosine and sine of the angle. Raises ValueError."""
     cosine, sine = _cosine(angle), _cosine(angle - 90.0)
     x, y = record.position.T
@@ -101,7 +101,9 @@ def _turned(record: Record, angle: float) -> tuple[Array, Array, tuple[float, fl
     if len(along) < 3:
         raise ValueError(f"{record.source}: has {len(along)} nodes; a contact needs at least 3")
     if np.any(np.diff(along) <= 1e-9 * np.ptp(along)):
-        raise ValueError(f"{record.source}: two nodes are at the same place along the contact; is angle={angle:g} the direction of the surface?")
+        raise ValueError(
+            f"{record.source}: two nodes are at the same place along the contact; is angle={angle:g} the direction of the surface?"
+        )
     return turned, order, (cosine, sine)
 
 
@@ -110,9 +112,12 @@ def _cosine(degrees: float) -> float:
     return float(np.round(np.cos(np.radians(degrees)), 15)) if degrees % 90.0 == 0.0 else float(np.cos(np.radians(degrees)))
 
 
-def _faces(record: Record, turned: Array, order: Array, is_quadratic: bool) -> list[Face]:
+def _faces(record: Record, turned: Array, order: Places, is_quadratic: bool) -> list[Face]:
     """The sides of elements along the surface, in their order; between neighbouring nodes if the mesh has none. Raises ValueError."""
-    found = [face if turned[face.first, 0] < turned[face.last, 0] else face._replace(first=face.last, last=face.first) for face in record.faces]
+    found = [
+        face if turned[face.first, 0] < turned[face.last, 0] else face._replace(first=face.last, last=face.first)
+        for face in record.faces
+    ]
     covered = {node for face in found for node in face[:3] if node >= 0}
     if len(covered) == len(order):
         return sorted(found, key=lambda face: float(turned[face.first, 0]))
@@ -195,7 +200,8 @@ def _outward(record: Record, rotation: tuple[float, float]) -> float | None:
     """The sine of the angle between the surface's outward normal, averaged, and the contact; None without a mesh. Raises ValueError."""
     if not record.faces:
         return None
-    first, last = (record.position[[face[at] for face in record.faces]] for at in (0, 1))
+    first = record.position[[face.first for face in record.faces]]
+    last = record.position[[face.last for face in record.faces]]
     inside = np.array([face.inside for face in record.faces])
     along, out = last - first, 0.5 * (first + last) - inside
     normal = np.column_stack([along[:, 1], -along[:, 0]])
@@ -212,7 +218,7 @@ def _outward(record: Record, rotation: tuple[float, float]) -> float | None:
     return float(up)
 
 
-def _at_corners(x: Array, faces: list[Face], normal: Array, shear: Array, order: Array) -> tuple[Array, Array, Array, Array]:
+def _at_corners(x: Array, faces: list[Face], normal: Array, shear: Array, order: Places) -> tuple[Places, Array, Array, Array]:
     """The corners in their order, forces at them, and widths. Forces between corners are divided between these, as by the lever rule, which
     is exact: hat functions between the corners are sums of the shape functions of a quadratic element."""
     normal, shear, width = normal.copy(), shear.copy(), np.zeros(len(x))
