@@ -37,7 +37,10 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("file", type=Path, metavar="RESULT", nargs="+", help="result, or meshes with a time each")
+    parser.add_argument("file", type=Path, metavar="RESULT", help="result of finite elements")
+    parser.add_argument(
+        "others", type=Path, metavar="MESH", nargs="*", help="meshes of later times, for formats with one time each"
+    )
     parser.add_argument("--surface", metavar="NAME", help="node set, surface, or array at points that is not 0 on it")
     parser.add_argument("--opposite", metavar="NAME", help="surface of the other body, for its bulk stress")
     parser.add_argument(
@@ -68,16 +71,13 @@ def run(options: argparse.Namespace) -> None:
     """Read, write, print the key. Raises OSError, InputError, ValueError, ModuleNotFoundError."""
     from ..finite_elements import from_fe
 
-    first: Path = options.file[0]
+    first: Path = options.file
+    files = [first, *options.others]
     usual = first.with_name(f"{first.stem}_loads.txt")
-    path = target(options.output, usual, (".txt", ".csv", ".dat"), options.file)
-    edges = (
-        None
-        if options.edges is None
-        else target(options.edges, first.with_name("edges.csv"), (".csv", ".txt"), [*options.file, path])
-    )
+    path = target(options.output, usual, (".txt", ".csv", ".dat"), files)
+    edges = None if options.edges is None else target(options.edges, first.with_name("edges.csv"), (".csv", ".txt"), [*files, path])
     loads = from_fe(
-        options.file if len(options.file) > 1 else first,
+        files if options.others else first,
         options.surface,
         opposite=options.opposite,
         mesh=options.mesh,

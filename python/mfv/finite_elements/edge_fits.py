@@ -90,8 +90,8 @@ def _at_time(x: Array, basis: _Basis, pressure: Array, shear: Array) -> tuple[fl
 
 
 def _is_complete(pressure: Array, loaded: Places) -> bool:
-    """Whether the pressure rises towards the right edge, as at a corner: the largest is at one of the last two of many nodes."""
-    return len(loaded) > 5 and int(np.argmax(pressure)) >= loaded[-2]
+    """Whether the pressure rises towards the right edge, as at a corner: of the right half the last two nodes have the largest."""
+    return len(loaded) > 5 and float(pressure[loaded[-2:]].max()) >= float(pressure[loaded[len(loaded) // 2 :]].max())
 
 
 def _fit(x: Array, basis: _Basis, pressure: Array, shear: Array, last: int, size: int) -> _Fit:

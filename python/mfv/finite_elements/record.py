@@ -15,18 +15,27 @@ Places = NDArray[np.intp]
 #: Names in results, in lower case and without blanks, dashes, points and underscores, of what a record has. Those of forces may occur
 #: together, such as Abaqus's normal and frictional ones: they are added.
 NAMES: dict[str, tuple[str, ...]] = {
-    "force_x": ("forcex", "fx", "rf1", "rfrf1", "rfx", "cnormf1", "cnormfcnormf1", "cshearf1", "cshearfcshearf1", "f1"),
-    "force_y": ("forcey", "fy", "rf2", "rfrf2", "rfy", "cnormf2", "cnormfcnormf2", "cshearf2", "cshearfcshearf2", "f2"),
+    **{
+        f"force_{axis}": (
+            f"force{axis}",
+            f"f{axis}",
+            f"forces{axis}",
+            f"nodalforces{axis}",
+            f"rf{axis}",
+            f"rf{n}",
+            f"rfrf{n}",
+            f"f{n}",
+        )
+        + tuple(f"{name}{end}" for name in ("cnormf", "cshearf") for end in (axis, n, f"cnormf{n}", f"cshearf{n}"))
+        for axis, n in (("x", "1"), ("y", "2"))
+    },
     "pressure": ("pressure", "p", "cpress"),
     "shear": ("shear", "tau", "cshear1"),
-    "stress_xx": ("stressxx", "sigmaxx", "sxx", "s11", "ss11"),
-    "stress_yy": ("stressyy", "sigmayy", "syy", "s22", "ss22"),
-    "stress_xy": ("stressxy", "sigmaxy", "sxy", "s12", "ss12"),
+    **{
+        f"stress_{axes}": (f"stress{axes}", f"sigma{axes}", f"s{axes}", f"s{n}", f"ss{n}", f"stresses{axes}", f"cauchystress{axes}")
+        for axes, n in (("xx", "11"), ("yy", "22"), ("xy", "12"))
+    },
 }
-
-#: Names of arrays with components, and what these are called.
-VECTORS = ("force", "forces", "nodalforces", "rf", "cnormf", "cshearf", "forc")
-TENSORS = ("stress", "stresses", "s", "sigma", "cauchystress")
 
 #: Names in the options of a user: one name in the result or several, whose values are added.
 Columns = Mapping[str, Union[str, Sequence[str]]]
@@ -93,8 +102,7 @@ def chosen(available: Mapping[str, Array], source: str, columns: Columns | None)
             found = [short[plain(str(name))] for name in names]
         else:
             found = [short[name] for name in known if name in short]
-            of_contact = [name for name in found if plain(name).startswith(("cnormf", "cshearf"))]
-            found = of_contact or found[:1]
+            found = [name for name in found if plain(name).startswith(("cnormf", "cshearf"))] or found[:1]
         if found:
             fields[key] = np.sum([available[name] for name in found], axis=0)
     return _checked(fields, source, available)
@@ -121,20 +129,19 @@ def _listed(names: Iterable[str]) -> str:
     return ", ".join(names) or "no arrays"
 
 
+#: Places of xx, yy and xy among the components of a stress, by the shape of its last axes.
+_STRESSES = {(3,): (0, 1, 2), (4,): (0, 1, 3), (6,): (0, 1, 3), (9,): (0, 4, 1), (2, 2): (0, 3, 1), (3, 3): (0, 4, 1)}
+
+
 def components(name: str, values: Array) -> dict[str, Array]:
-    """The components of an array (times, nodes, components) of a mesh, by names of NAMES; an array (times, nodes) by its own name."""
-    if values.ndim == 2:
-        return {name: values}
+    """The components of an array of a mesh, (times, nodes) and axes of components, with _x, _y or _xx, _yy, _xy behind its name."""
+    shape = values.shape[2:]
+    if not shape or shape == (1,):
+        return {name: values.reshape(values.shape[:2])}
     flat = values.reshape(*values.shape[:2], -1)
-    size, short = flat.shape[2], plain(name)
-    if short in VECTORS and size in (2, 3):
-        return {f"{name}1" if short in ("cnormf", "cshearf", "rf") else f"{name}_x": flat[..., 0]} | {
-            f"{name}2" if short in ("cnormf", "cshearf", "rf") else f"{name}_y": flat[..., 1]
-        }
-    places = {3: (0, 1, 2), 4: (0, 1, 3) if values.ndim == 3 else (0, 3, 1), 6: (0, 1, 3), 9: (0, 4, 1)}
-    if size in places and (short in TENSORS or size in (4, 6, 9)):
-        return {f"{name}_{part}": flat[..., place] for part, place in zip(("xx", "yy", "xy"), places[size])}
-    return {f"{name}_{part}": flat[..., place] for place, part in enumerate("xyz"[:size])}
+    if shape in _STRESSES and (shape != (3,) or plain(f"{name}xx") in NAMES["stress_xx"]):
+        return {f"{name}_{part}": flat[..., place] for part, place in zip(("xx", "yy", "xy"), _STRESSES[shape])}
+    return {f"{name}_{part}": flat[..., place] for place, part in enumerate("xyz"[: flat.shape[2]])}
 
 
 def on_surface(

@@ -100,7 +100,7 @@ def _turned(record: Record, angle: float) -> tuple[Array, Places, tuple[float, f
     along = turned[order, 0]
     if len(along) < 3:
         raise ValueError(f"{record.source}: has {len(along)} nodes; a contact needs at least 3")
-    if np.any(np.diff(along) <= 1e-9 * np.ptp(along)):
+    if np.any(np.diff(along) <= 1e-9 * np.ptp(record.position, axis=0).max()):
         raise ValueError(
             f"{record.source}: two nodes are at the same place along the contact; is angle={angle:g} the direction of the surface?"
         )
