@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
+import resource
 import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -26,6 +28,7 @@ os.environ.setdefault("MFV_LIBRARY", str(ROOT / "build/release/lib/libmfv.so"))
 
 from mfv import Body, Friction, Mesh, Output, Scene
 from mfv.finite_elements import ContactLoads, from_fe
+from mfv.finite_elements.deck import read_deck
 from mfv.finite_elements.readers import read_surface
 
 Array = NDArray[np.float64]
@@ -40,7 +43,9 @@ DOWN, ASIDE, STRETCH = 0.0071, 0.0034, 0.004
 INCREMENTS = (4, 10, 20, 20)
 #: Penalty stiffnesses [N/mm^3].
 NORMAL_PENALTY, STICK_PENALTY = 1.0e8, 1.0e7
-#: A node of the finite elements sticks below this share of mu p.
+#: Times of the model between which slip is measured; the second one is the end.
+TURN, END = 3.0, 4.0
+#: A node sticks below this share of mu p.
 STICKS = 0.98
 
 
@@ -129,7 +134,7 @@ def _step(increments: int, way: float) -> list[str]:
 
 
 def solved(folder: Path, divisions: int) -> tuple[Path, int, float]:
-    """The result on a mesh, its number of elements, and the seconds that it took. Raises RuntimeError if ccx fails."""
+    """The result on a mesh, its number of elements, and the processor's seconds that it took. Raises RuntimeError if ccx fails."""
     text, elements = deck(HALF_WIDTH / divisions)
     name = f"pad{divisions}"
     result, clock = folder / f"{name}.frd", folder / f"{name}.seconds"
@@ -137,13 +142,45 @@ def solved(folder: Path, divisions: int) -> tuple[Path, int, float]:
         return result, elements, float(clock.read_text())
     clock.unlink(missing_ok=True)
     (folder / f"{name}.inp").write_text(text)
-    start = time.perf_counter()
+    start = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     run = subprocess.run(["ccx", name], cwd=folder, capture_output=True, text=True, env=os.environ | {"OMP_NUM_THREADS": "1"})
-    seconds = time.perf_counter() - start
+    seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - start
     if run.returncode or "Job finished" not in run.stdout:
         raise RuntimeError(f"ccx failed: {run.stdout[-500:]}")
     clock.write_text(f"{seconds:.3f}")
     return result, elements, seconds
+
+
+def trimmed(result: Path, folder: Path) -> None:
+    """Write a result with the surfaces' nodes at the ends of the steps only, its deck with these nodes and their sets, and the resultants."""
+    deck_of = read_deck(result.with_suffix(".inp"))
+    names = ("UPPER_SURFACE", "LOWER_SURFACE")
+    kept = {number for name in names for number in deck_of.numbers(name)}
+    lines = ["** Nodes of the surfaces of a pad, by bench/finite_element_pad.py", "*NODE"]
+    lines += [f"{number},{deck_of.nodes[number][0]:.12g},{deck_of.nodes[number][1]:.12g}" for number in sorted(kept)]
+    for name in names:
+        lines += [f"*NSET, NSET={name}", *(str(number) for number in deck_of.numbers(name))]
+        lines += [f"*SURFACE, NAME={name}, TYPE=NODE", name]
+    (folder / "pad.inp").write_text("\n".join(lines) + "\n")
+    (folder / "pad.frd").write_text("".join(_trimmed_blocks(result, kept)))
+    text = result.with_suffix(".dat").read_text()
+    parts = re.split(r"(?=^ statistics for slave set)", text, flags=re.MULTILINE)
+    times = [float(match[1]) if (match := re.search(r"and time\s+(\S+)", part)) else 0.5 for part in parts]
+    (folder / "pad.dat").write_text("".join(part for part, time in zip(parts, times) if time % 1.0 == 0.0))
+
+
+def _trimmed_blocks(result: Path, kept: set[int]) -> Iterator[str]:
+    """The lines of a .frd file with stresses and contact tractions of some nodes at whole times."""
+    head, *blocks = re.split(r"(?=^    1PSTEP)", result.read_text(), flags=re.MULTILINE)
+    wanted = [block for block in blocks if re.search(r"^ -4  (STRESS|CONTACT) ", block, re.MULTILINE)]
+    of_node = re.compile(r"^ -1 *(\d+)")
+    elements = re.compile(r"^    3C.*?^ -3\n", re.MULTILINE | re.DOTALL)
+    for part in [elements.sub("", head), *(block for block in wanted if float(block.splitlines()[1][12:24]) % 1.0 == 0.0)]:
+        for line in part.splitlines(keepends=True):
+            number = of_node.match(line[:13])
+            if number is None or int(number[1]) in kept:
+                yield line
+    yield " 9999\n"
 
 
 # --- answers ---
@@ -153,22 +190,36 @@ def of_elements(result: Path) -> Answer:
     """The answer of the finite elements."""
     contact, slip = read_surface(result, "UPPER_SURFACE"), read_surface(result, "UPPER_SURFACE", columns={"shear": "CSLIP1"})
     below = read_surface(result, "LOWER_SURFACE")
-    x, pressure, shear = contact.position[:, 0], contact.fields["pressure"], contact.fields["shear"]
-    touches = pressure[-1] > 1e-3 * pressure[-1].max()
-    sticks = x[touches & (np.abs(shear[-1]) < STICKS * MU * pressure[-1])]
-    turn = int(np.argmin(np.abs(contact.times - 3.0)))
-    both = touches & (pressure[turn] > 1e-3 * pressure[turn].max())
-    moved = np.abs(slip.fields["shear"][-1] - slip.fields["shear"][turn])[both]
-    stress = below.fields["stress_xx"][-1]
+    pressure, shear = contact.fields["pressure"], contact.fields["shear"]
+    turn, end = (int(np.argmin(np.abs(contact.times - time))) for time in (TURN, END))
+    moved = slip.fields["shear"][end] - slip.fields["shear"][turn]
+    stress = below.fields["stress_xx"][end]
     largest = int(np.argmax(stress))
-    edges = (float(sticks.min()), float(sticks.max())) if len(sticks) else (np.nan, np.nan)
     return Answer(
-        float(np.abs(shear[-1]).max()), edges, float(stress[largest]), float(below.position[largest, 0]), float(moved.max())
+        float(np.abs(shear[end]).max()),
+        stick_zone(contact.position[:, 0], pressure[end], shear[end]),
+        float(stress[largest]),
+        float(below.position[largest, 0]),
+        slip_range(pressure[turn], pressure[end], moved),
     )
 
 
+def stick_zone(x: Array, pressure: Array, shear: Array) -> tuple[float, float]:
+    """The ends of the longest row of nodes that stick, by their tractions; NaN if none does."""
+    sticks = (pressure > 1e-3 * pressure.max()) & (np.abs(shear) < STICKS * MU * pressure)
+    places = np.nonzero(sticks)[0]
+    row = max(np.split(places, np.nonzero(np.diff(places) > 1)[0] + 1), key=len)
+    return (float(x[row[0]]), float(x[row[-1]])) if len(row) else (np.nan, np.nan)
+
+
+def slip_range(before: Array, after: Array, moved: Array) -> float:
+    """The largest slip from one state to another at nodes in contact in both."""
+    both = (before > 1e-3 * before.max()) & (after > 1e-3 * after.max())
+    return float(np.abs(moved[both]).max())
+
+
 def of_sub_model(loads: ContactLoads, nodes: int) -> tuple[Answer, float]:
-    """The answer of MFV under loads of the finite elements, and the seconds that it took."""
+    """The answer of MFV under loads of the finite elements, and the processor's seconds that it took."""
     alloy = {"youngs_modulus": YOUNG, "poisson_ratio": POISSON}
     bodies = Body.half_plane(**alloy), Body.disk(RADIUS, elasticity="half_plane", **alloy)
     scene = Scene(
@@ -178,16 +229,20 @@ def of_sub_model(loads: ContactLoads, nodes: int) -> tuple[Answer, float]:
         steps=loads.steps(),
         output=Output(states="steps", history="steps"),
     )
-    start = time.perf_counter()
+    start = time.process_time()
     result = scene.run(check=True)
-    seconds = time.perf_counter() - start
-    turn = result.steps[int(np.argmin(np.abs(loads.t[loads.loaded] - 3.0)))]
-    touches = (np.array(turn.pressure) > 0.0) & (np.array(result.state.pressure) > 0.0)
-    moved = np.abs(np.array(result.state.slip) - np.array(turn.slip))[touches]
-    stick = float(result.summary.stick_left), float(result.summary.stick_right)
-    observed = result.observables
-    peak = float(np.abs(result.state.shear).max())
-    return Answer(peak, stick, float(observed.lower_tension), float(observed.lower_tension_x), float(moved.max())), seconds
+    seconds = time.process_time() - start
+    times = loads.t[loads.loaded]
+    turn, end = (result.steps[int(np.argmin(np.abs(times - time)))] for time in (TURN, END))
+    moved = np.array(end.slip) - np.array(turn.slip)
+    answer = Answer(
+        float(np.abs(end.shear).max()),
+        stick_zone(np.array(result.mesh.x), np.array(end.pressure), np.array(end.shear)),
+        float(result.observables.lower_tension),
+        float(result.observables.lower_tension_x),
+        slip_range(np.array(turn.pressure), np.array(end.pressure), moved),
+    )
+    return answer, seconds
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -195,6 +250,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--folder", type=Path, default=ROOT / "build/pad")
     parser.add_argument("--divisions", type=int, nargs="+", default=[4, 8, 16, 32], help="elements across half the contact")
     parser.add_argument("--nodes", type=int, default=201, help="nodes of MFV")
+    parser.add_argument(
+        "--trimmed", type=Path, metavar="FOLDER", help="write the surfaces of the first mesh as examples/fe_pad has them"
+    )
     options = parser.parse_args(arguments)
     if shutil.which("ccx") is None:
         print("skipped: the program ccx (CalculiX) is not installed; in Debian it is in the package calculix-ccx")
@@ -206,7 +264,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     print("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |")
     for divisions in options.divisions:
         result, elements, seconds = solved(options.folder, divisions)
-        loads = from_fe(result, "UPPER_SURFACE", opposite="LOWER_SURFACE")
+        if options.trimmed:
+            trimmed(result, options.trimmed)
+            return 0
+        loads = from_fe(result, "UPPER_SURFACE", opposite="LOWER_SURFACE", centre=0.0)
         assert loads.lower_bulk is not None
         bulk = f"{loads.lower_bulk.stress[-1]:.2f} +- {loads.lower_bulk.error[-1]:.2f}"
         carried = f"{loads.P[-1]:.2f} | {loads.Q[-1]:.2f} | {bulk}"

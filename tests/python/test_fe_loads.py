@@ -109,6 +109,7 @@ def test_tractions_at_nodes_have_errors() -> None:
     for spacing in (0.25, 0.125):
         for offset in (0.0, 0.33, 0.7):
             loads = from_fe(sampled(spacing, offset), centre=0.0)
+            assert "P where it is largest is known to about" in loads.notes[0]
             for edge in (loads.left, loads.right):
                 assert abs(abs(edge.x[0]) - 1.0) < edge.x_error[0]
                 assert abs(edge.K_N[0] - K_N) < edge.K_N_error[0] and abs(edge.K_T[0] - K_T) < edge.K_T_error[0]
@@ -127,7 +128,7 @@ def test_what_cannot_be_told_is_not() -> None:
     """A punch with corners, a node set that ends in the contact, too few nodes."""
     x = np.linspace(-1.0, 1.0, 41)
     punch = from_fe({"x": x, "pressure": 1.0 / np.sqrt(1.02 - x**2)})
-    assert np.isnan(punch.right.K_N[0]) and punch.right.x[0] == 1.0 and "reaches the end of the node set" in punch.notes[0]
+    assert np.isnan(punch.right.K_N[0]) and punch.right.x[0] == 1.0 and "reaches the end of the node set" in punch.notes[1]
     x = np.linspace(-1.5, 1.5, 61)
     beyond = from_fe({"x": x, "pressure": np.where(np.abs(x) < 1.0, 1.0 / np.sqrt(1.02 - np.minimum(x**2, 1.0)), 0.0)})
     assert np.isnan(beyond.left.K_N[0])
@@ -567,6 +568,11 @@ def test_the_master_surface_of_calculix_has_no_tractions() -> None:
         ({"x": [0.0, 1.0, 2.0], "pressure": [0.0, 1.0, 0.0]}, {"columns": {"p": "x"}}, "columns: unknown quantity 'p'"),
         ({"x": [0.0, 1.0, 2.0], "a": [0.0, 1.0, 0.0]}, {"columns": {"pressure": "b"}}, "no values 'b' for pressure; there are a"),
         ({"x": [0.0, 1.0, 2.0], "pressure": [[0, 1, 0], [0, -1, 0]]}, {}, "pull the bodies apart at time 1"),
+        (
+            {"x": [0, 1, 2], "pressure": [0, 1, 0], "stress": [0, 0, 0], "sxx": [0, 0, 0], "syy": [0, 0, 0], "sxy": [0, 0, 0]},
+            {},
+            "give body, 'lower' or 'upper'",
+        ),
         ({}, {"body": "left"}, "body: must be 'lower' or 'upper', not 'left'"),
         ({}, {"thickness": 0.0}, "thickness: must be positive, not 0.0"),
         ({}, {"sign": 2.0}, "sign: must be 1 or -1, not 2.0"),

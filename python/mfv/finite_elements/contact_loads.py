@@ -173,6 +173,8 @@ def from_fe(
             raise ValueError(
                 f"{beside.source}: has no stresses (stress_xx, stress_yy, stress_xy), which the opposite surface is for"
             )
+        if not np.array_equal(beside.times, record.times):
+            raise ValueError(f"{beside.source}: has other times than {record.source}; is the result complete?")
         other = _scaled(traces_of(beside._replace(fields=stresses), of_other), length_scale, force_scale)
     return _loads(traces, other, None if centre is None else centre * length_scale, bulk_range)
 
@@ -268,6 +270,11 @@ def _notes(
 ) -> list[str]:
     """What a user should know."""
     notes = []
+    if traces.tractions is not None and traces.totals is None:
+        notes.append(
+            f"P and Q are integrals of tractions between nodes; P where it is largest is known to about {_uncertainty(traces, fullest):.1%}, Q "
+            "less well if the edges stick; nodal forces (columns force_x, force_y) give exact sums"
+        )
     if loaded[0] == 0 or loaded[-1] == len(traces.x) - 1:
         notes.append(
             "the contact reaches the end of the node set: a complete contact, or the set is too short; K_N and K_T are unknown there"
@@ -284,6 +291,14 @@ def _notes(
                 f"no bulk stress of the {of_body.body} body: fewer than 2 nodes with stresses lie beside the contact (bulk_range)"
             )
     return notes
+
+
+def _uncertainty(traces: Traces, at: int) -> float:
+    """The difference of P by every second node from that by all, relative; halving elements reduces the error at edges by 2^1.5."""
+    assert traces.tractions is not None
+    pressure = traces.tractions[0][at]
+    sums = [float(np.sum(np.diff(x) * (p[1:] + p[:-1]))) for x, p in ((traces.x, pressure), (traces.x[::2], pressure[::2]))]
+    return abs(sums[1] / sums[0] - 1.0) / (2.0**1.5 - 1.0)
 
 
 def _write(path: Path, heading: str, columns: dict[str, Array]) -> None:

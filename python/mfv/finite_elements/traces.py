@@ -63,8 +63,14 @@ def traces_of(record: Record, axes: Axes, is_quadratic: bool = False) -> Traces:
     faces = _faces(record, turned, order, is_quadratic)
     thickness = record.thickness if axes.thickness is None else axes.thickness
     normal, shear, of_forces = _forces(record, axes, rotation, faces, turned[:, 0], thickness)
-    body = _checked_body(record, axes, rotation, of_forces)
+    body = _checked_body(record, axes, rotation, of_forces or _pressed(record, axes, rotation))
+    totals = _resultants(record, axes, rotation, body, thickness)
     are_tractions = of_forces is None and "pressure" in record.fields
+    sense = axes.shear_sign if totals is None else _sense(shear.sum(axis=1), totals[:, 1])
+    if are_tractions:
+        shear = sense * shear
+    if totals is not None:
+        normal, shear = _balanced(normal, shear, totals)
     corners, normal, shear, width = _at_corners(turned[:, 0], faces, normal, shear, order)
     return Traces(
         record.source,
@@ -74,12 +80,20 @@ def traces_of(record: Record, axes: Axes, is_quadratic: bool = False) -> Traces:
         width,
         normal,
         shear,
-        (record.fields["pressure"][:, corners], axes.shear_sign * _shear_of(record)[:, corners]) if are_tractions else None,
+        (record.fields["pressure"][:, corners], sense * _shear_of(record)[:, corners]) if are_tractions else None,
         turned[order, 0],
         _stress_along(record, rotation)[:, order] if "stress_xx" in record.fields else None,
-        _resultants(record, axes, rotation, body, thickness),
+        totals,
         turned[corners, 1],
     )
+
+
+def _pressed(record: Record, axes: Axes, rotation: tuple[float, float]) -> str | None:
+    """The body that the resultants press; None without resultants."""
+    if record.totals is None:
+        return None
+    up = axes.sign * (rotation[0] * record.totals[:, 1] - rotation[1] * record.totals[:, 0])
+    return "lower" if up[np.argmax(np.abs(up))] < 0.0 else "upper"
 
 
 def _resultants(record: Record, axes: Axes, rotation: tuple[float, float], body: str, thickness: float) -> Array | None:
@@ -89,6 +103,18 @@ def _resultants(record: Record, axes: Axes, rotation: tuple[float, float], body:
     across, along, moment = record.totals.T * axes.sign * (1.0 if body == "lower" else -1.0) / thickness
     cosine, sine = rotation
     return np.column_stack([sine * across - cosine * along, cosine * across + sine * along, moment])
+
+
+def _sense(sums: Array, totals: Array) -> float:
+    """1 or -1: whether sums of shear tractions have the sign of the resultants, which tell the direction of a program's tractions."""
+    return 1.0 if float(sums @ totals) >= 0.0 else -1.0
+
+
+def _balanced(normal: Array, shear: Array, totals: Array) -> tuple[Array, Array]:
+    """Nodal forces whose sums are the resultants: the pressing ones in proportion, the difference of the others in proportion to these."""
+    sums = normal.sum(axis=1)
+    share = np.divide(normal, sums[:, None], out=np.zeros_like(normal), where=sums[:, None] > 0.0)
+    return share * totals[:, :1], shear + share * (totals[:, 1] - shear.sum(axis=1))[:, None]
 
 
 def _turned(record: Record, angle: float) -> tuple[Array, Places, tuple[float, float]]:
@@ -149,7 +175,7 @@ def _forces(
     if pressure is None:
         zero = np.zeros((len(record.times), len(x)))
         return zero, zero, None
-    return _consistent(faces, x, pressure), axes.shear_sign * _consistent(faces, x, _shear_of(record)), None
+    return _consistent(faces, x, pressure), _consistent(faces, x, _shear_of(record)), None
 
 
 def _shear_of(record: Record) -> Array:
@@ -184,6 +210,10 @@ def _checked_body(record: Record, axes: Axes, rotation: tuple[float, float], of_
     up = _outward(record, rotation)
     of_mesh = None if up is None else "lower" if up > 0.0 else "upper"
     body = axes.body or of_mesh or of_forces or "lower"
+    if "stress_xx" in record.fields and not (axes.body or of_mesh or of_forces):
+        raise ValueError(
+            f"{record.source}: give body, 'lower' or 'upper': tractions do not tell whose surface and stresses these are"
+        )
     if of_mesh is not None and body != of_mesh:
         raise ValueError(
             f"{record.source}: the surface faces {'up' if of_mesh == 'lower' else 'down'} at angle={axes.angle:g}, so it is that of the "
