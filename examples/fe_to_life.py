@@ -32,7 +32,7 @@ if __name__ == "__main__":
     loads = mfv.loads.from_fe(RESULT, "UPPER_SURFACE", opposite="LOWER_SURFACE", centre=0.0)
     for at, time in enumerate(loads.t):
         bulk = f"{loads.lower_bulk.stress[at]:.1f} +- {loads.lower_bulk.error[at]:.1f}"
-        print(f"time {time:g}: P {loads.P[at]:.2f}, Q {loads.Q[at]:.2f} N/mm, bulk stress {bulk} MPa")
+        print(f"time {time:g}: P {loads.P[at]:.2f}, Q {round(loads.Q[at], 2) + 0.0:.2f} N/mm, bulk stress {bulk} MPa")
     table = loads.table()
     middle, finer = answer(solved(table)), answer(solved(table, 401))
     off = [answer(solved(table | {"lower_bulk_stress": loads.lower_bulk.stress + s * loads.lower_bulk.error})) for s in (-1, 1)]

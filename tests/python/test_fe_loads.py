@@ -458,6 +458,18 @@ def test_vtu_and_pvd(tmp_path: Path) -> None:
         from_fe(tmp_path / "bad.vtu", "top")
 
 
+def test_xdmf(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """All times in one file."""
+    meshio = pytest.importorskip("meshio")
+    monkeypatch.chdir(tmp_path)
+    frames_of = [meshio.read(meshio_of(tmp_path / f"job{n}.vtu", n)) for n in range(3)]
+    with meshio.xdmf.TimeSeriesWriter("job.xdmf") as writer:
+        writer.write_points_cells(frames_of[0].points, frames_of[0].cells)
+        for n, mesh in enumerate(frames_of):
+            writer.write_data(n + 1.0, point_data=mesh.point_data)
+    same(from_fe("job.xdmf", "top"), expected())
+
+
 def test_exodus(tmp_path: Path) -> None:
     """All times of a file, by the name or the number of a node set."""
     netcdf = pytest.importorskip("netCDF4")
@@ -540,6 +552,18 @@ def test_pad_of_calculix() -> None:
     nodal = from_fe({"x": record.position[:, 0], "pressure": record.fields["pressure"], "shear": record.fields["shear"]})
     assert np.all(nodal.P / loads.P > [1.3, 1.1]), "tractions at nodes of this mesh are too coarse for loads"
     assert np.sign(nodal.Q[1]) == np.sign(loads.Q[1]), "CSHEAR1 of a slave surface above has the sign of Q"
+
+
+def test_the_pad_of_calculix_upside_down() -> None:
+    """Seen from above the pad is the lower body: P and Q are the same, the moment and the edges change places."""
+    names = {"opposite": "LOWER_SURFACE"}
+    loads = from_fe(RESULTS / "pad.frd", "UPPER_SURFACE", centre=0.3, **names)
+    turned = from_fe(RESULTS / "pad.frd", "UPPER_SURFACE", centre=-0.3, angle=180.0, thickness=2.0, **names)
+    np.testing.assert_allclose([2.0 * turned.P, 2.0 * turned.Q, 2.0 * turned.M], [loads.P, loads.Q, -loads.M], rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(turned.left.x, -loads.right.x, atol=1e-9)
+    np.testing.assert_allclose(loads.M, 0.3 * loads.P, rtol=2e-2)
+    assert loads.lower_bulk is not None and turned.upper_bulk is not None
+    assert turned.upper_bulk.stress[0] == pytest.approx(loads.lower_bulk.stress[0], rel=1e-9)
 
 
 def test_the_master_surface_of_calculix_has_no_tractions() -> None:
