@@ -224,7 +224,7 @@ def of_sub_model(loads: ContactLoads, nodes: int) -> tuple[Answer, float]:
     bodies = Body.half_plane(**alloy), Body.disk(RADIUS, elasticity="half_plane", **alloy)
     scene = Scene(
         *bodies,
-        mesh=Mesh(nodes=nodes),
+        mesh=Mesh(nodes=nodes, refine="edges"),
         friction=Friction.coulomb(MU),
         steps=loads.steps(),
         output=Output(states="steps", history="steps"),
@@ -258,15 +258,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("skipped: the program ccx (CalculiX) is not installed; in Debian it is in the package calculix-ccx")
         return 0
     options.folder.mkdir(parents=True, exist_ok=True)
+    if options.trimmed:
+        trimmed(solved(options.folder, options.divisions[0])[0], options.trimmed)
+        return 0
     print(
         "| model | elements or nodes | seconds | P | Q | bulk stress | peak shear | stick zone | tension | at x | slip range, um |"
     )
     print("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |")
     for divisions in options.divisions:
         result, elements, seconds = solved(options.folder, divisions)
-        if options.trimmed:
-            trimmed(result, options.trimmed)
-            return 0
         loads = from_fe(result, "UPPER_SURFACE", opposite="LOWER_SURFACE", centre=0.0)
         assert loads.lower_bulk is not None
         bulk = f"{loads.lower_bulk.stress[-1]:.2f} +- {loads.lower_bulk.error[-1]:.2f}"

@@ -361,7 +361,8 @@ def report(times: list[float], names: str, row: Callable[[int, int], str], size:
         )
         text += f"   Step: Step-{n + 1}\n   Frame: Increment     10: Step Time =    {time:.4f}\n\nLoc 1 : Nodal values from source 1\n\n"
         text += 'Output sorted by column "Node Label".\n\nField Output reported at nodes for part: PAD-1\n\n'
-        text += f"            Node {names}\n           Label          @Loc 1          @Loc 1\n" + "-" * 65 + "\n"
+        count = len(names.split("  "))
+        text += f"            Node  {names}\n           Label" + "          @Loc 1" * count + "\n" + "-" * 65 + "\n"
         text += "\n".join(row(n, i) for i in range(size))
         text += "\n\n\n  Minimum        -1.  0.\n      At Node           1     1\n\n  Total   -3.   0.\n\n"
     return text
@@ -372,7 +373,10 @@ def test_report_of_abaqus(tmp_path: Path) -> None:
     path = tmp_path / "job.rpt"
     path.write_text(
         report(
-            [1.0] * 3, "CSHEARF.CSHEARF1 CNORMF.CNORMF2", lambda n, i: f"{i + 1}  {across[n, i]:.17g}  {along[n, i]:.17g}", len(x)
+            [1.0] * 3,
+            "CSHEARF.CSHEARF1 PAD/BASE  CNORMF.CNORMF2 PAD/BASE",
+            lambda n, i: f"{i + 1}  {across[n, i]:.17g}  {along[n, i]:.17g}",
+            len(x),
         )
     )
     columns = {"force_x": "CSHEARF.CSHEARF1", "force_y": "CNORMF.CNORMF2"}
@@ -384,7 +388,7 @@ def test_report_of_abaqus(tmp_path: Path) -> None:
     path.write_text(
         report(
             [1.0] * 3,
-            "COORD.COOR1 CSHEARF.CSHEARF1 CNORMF.CNORMF2",
+            "COORD.COOR1  CSHEARF.CSHEARF1  CNORMF.CNORMF2",
             lambda n, i: f"{i + 1}  {x[i]:.17g}  {across[n, i]:.17g}  {along[n, i]:.17g}",
             len(x),
         )

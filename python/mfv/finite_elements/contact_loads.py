@@ -298,7 +298,7 @@ def _uncertainty(traces: Traces, at: int) -> float:
     assert traces.tractions is not None
     pressure = traces.tractions[0][at]
     sums = [float(np.sum(np.diff(x) * (p[1:] + p[:-1]))) for x, p in ((traces.x, pressure), (traces.x[::2], pressure[::2]))]
-    return abs(sums[1] / sums[0] - 1.0) / (2.0**1.5 - 1.0)
+    return float(abs(sums[1] / sums[0] - 1.0) / (2.0**1.5 - 1.0))
 
 
 def _write(path: Path, heading: str, columns: dict[str, Array]) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..tables import read_rows
 from .deck import read_deck
-from .record import Array, Columns, Record, chosen, on_surface, plain
+from .record import Array, Columns, Record, chosen, on_surface
 
 #: Names of columns, in lower case: times, sets, nodes and where they are.
 _TIMES = ("time", "t", "total time", "frame")
@@ -192,7 +192,7 @@ def _tables_of(path: Path) -> list[tuple[str, float, list[str], Array]]:
             elif match := _TIME.search(line):
                 time = float(match[1])
             elif _RULE.match(line) and "label" in above[1].lower():
-                found.append((step, time, _names(above[0]), []))
+                found.append((step, time, _names(above[0], 1 + above[1].count("@")), []))
                 is_table = True
             elif is_table and words and words[0].isdigit() and len(words) == len(found[-1][2]):
                 found[-1][3].append([float(word) for word in words])
@@ -202,9 +202,10 @@ def _tables_of(path: Path) -> list[tuple[str, float, list[str], Array]]:
     return [(step, time, names, np.array(rows)) for step, time, names, rows in found if rows]
 
 
-def _names(line: str) -> list[str]:
-    """The names of the columns: Node and variables; those of Abaqus have no blanks."""
-    return [word for word in line.split() if plain(word) != "label"]
+def _names(line: str, columns: int) -> list[str]:
+    """The names of the columns: Node and variables. Behind those of contact there may be the names of the surfaces, after a blank."""
+    parts = [part.split()[0] for part in re.split(r"\s{2,}", line.strip())]
+    return parts if len(parts) == columns else line.split()
 
 
 def bare_name(heading: str) -> str:
