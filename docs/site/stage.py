@@ -43,7 +43,7 @@ CONTENTS = {
         "docs/choosing",
     ],
     "Reference": ["docs/namelist", "docs/studies", "docs/file-format", "programs"],
-    "Applications": ["docs/pad_to_life", "docs/joints", "docs/identify", "docs/fatigue"],
+    "Applications": ["docs/pad_to_life", "docs/from_fe", "docs/fe_to_life", "docs/joints", "docs/identify", "docs/fatigue"],
     "Interfaces": ["docs/python-api", "python/index", "docs/c-api", "c", "docs/fortran-api", "fortran/index"],
     "Background": [
         "docs/theory",

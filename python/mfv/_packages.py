@@ -21,6 +21,7 @@ TOGETHER = (
     ("scipy", "emcee"),
     ("scipy", "pylife"),
     ("SurfaceTopography", "scipy"),
+    ("meshio", "netCDF4"),
 )
 
 

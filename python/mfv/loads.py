@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypedDict
+from importlib import import_module
+from typing import Any, NamedTuple, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -106,3 +107,10 @@ class Progress(NamedTuple):
     def done(self) -> float:
         """Completed fraction of the whole load history."""
         return (self.segment - 1 + self.fraction) / max(self.segments, 1)
+
+
+def __getattr__(name: str) -> Any:
+    """`from_fe`, which is loaded on first use."""
+    if name == "from_fe":
+        return import_module(".finite_elements", __package__).from_fe
+    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")

@@ -22,6 +22,8 @@ PAGES = (
     "docs/tutorial.md",
     "docs/c-api.md",
     "docs/fatigue.md",
+    "docs/fe_to_life.md",
+    "docs/from_fe.md",
     "docs/guide.md",
     "docs/identify.md",
     "docs/joints.md",
@@ -29,7 +31,7 @@ PAGES = (
     "docs/pad_to_life.md",
 )
 #: Pages whose Python blocks print what is shown below them; those of other pages are run by tests/python/test_docs.py.
-PYTHON_PAGES = ("README.md", "docs/tutorial.md", "docs/fatigue.md", "docs/identify.md", "docs/joints.md")
+PYTHON_PAGES = ("README.md", "docs/tutorial.md", "docs/fatigue.md", "docs/from_fe.md", "docs/identify.md", "docs/joints.md")
 COMPLETE, ENDED_EARLY = 0, 3
 #: Commands that the scripts of CI run themselves, that install, or that take minutes.
 NOT_RUN = re.compile(r"git clone|sh scripts/|cmake |pip |.*pip install|man |.*examples/dissertation/draw.py")

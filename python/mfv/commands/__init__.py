@@ -12,13 +12,13 @@ from .._packages import how_to_install
 from .._programs import become, message_of
 from .._suggestions import suggestion
 from ..errors import MfvError
-from . import animate, compare, fatigue, identify, info, new, plot, profile, report, run, stress, study
+from . import animate, compare, fatigue, identify, info, loads, new, plot, profile, report, run, stress, study
 from .completion import complete
 
 UNUSABLE = 2  # exit code for unusable input, the same as that of mfv_run
 INTERRUPTED = 130  # exit code after Ctrl-C, the same as that of mfv_run
 
-COMMANDS = (new, run, plot, info, stress, compare, animate, report, study, identify, profile, fatigue)
+COMMANDS = (new, run, plot, info, stress, compare, animate, report, study, identify, profile, loads, fatigue)
 
 #: Commands that are programs, with all their options.
 PROGRAMS = {module.NAME: module.PROGRAM for module in (run, stress)}
@@ -37,6 +37,7 @@ examples:
   mfv identify rig.nml loops.csv --free friction%mu=0.6
                                       parameters from measured loops
   mfv profile scan.x3p -o scan.txt    a measured profile as a text for &body
+  mfv loads pad.frd --surface PAD     loads of a finite-element model for &history
   mfv fatigue tests.csv               fatigue tests and predicted lives
 
 'mfv COMMAND --help' explains each command.
@@ -106,8 +107,8 @@ def _as_program(program: str, arguments: list[str]) -> int:
 
 def _overview() -> str:
     """The commands, a line each, and how to begin; the manual page is made from it (docs/man)."""
-    about = (f"Two-dimensional frictional elastic contact, version {__version__}.", "'mfv COMMAND --help' explains each command.")
-    lines = ["usage: mfv COMMAND ...", "", *about, "", "Commands:"]
+    about = f"Two-dimensional frictional contact, version {__version__}. Help: mfv COMMAND --help"
+    lines = ["usage: mfv COMMAND ...", "", about, "", "Commands:"]
     lines += [f"  {module.NAME:10}{module.HELP}" for module in COMMANDS]
     steps = ("mfv new cylinder.nml", "mfv run cylinder.nml", "mfv plot cylinder.h5")
     meanings = ("write a commented case", "solve it, write cylinder.h5", "draw cylinder.png")
