@@ -16,7 +16,7 @@ from .._suggestions import suggestion
 from ..errors import input_error
 from ..inputs import groups
 from ..inputs import keys as keys_of_text
-from ..tables import read_columns
+from ..tables import read_rows
 from .axes import Axis
 from .cases import Base, base_text
 
@@ -108,12 +108,13 @@ def with_history_in_text(base: Base) -> Base:
     file = dict(groups(text)).get("history", {}).get("file")
     if not file or any(file == name for name, _, _ in base.data):
         return base
-    path = Path(os.path.abspath(base.folder), file)
-    columns = read_columns(path, {name: [name] for name in _LOADS}, _LOADS)
+    rows = read_rows(Path(os.path.abspath(base.folder), file), ())
+    cells = [rows.cells(line) for line in rows.lines]
     namelist = f90nml.reads(text)
     del namelist["history"]["file"]
-    for name, column in columns.items():
-        namelist["history"][name] = column.numbers().tolist()
+    for place, name in enumerate(rows.names):
+        if name.lower() in _LOADS:
+            namelist["history"][name.lower()] = [rows.number(row[place]) for row in cells]
     return replace(base, text=str(namelist))
 
 

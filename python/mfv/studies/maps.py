@@ -383,16 +383,23 @@ def _inside(values: NDArray[Any]) -> NDArray[Any]:
 
 
 def polygons(table: xarray.Dataset, name: str) -> list[list[tuple[float, float]]]:
-    """The cells of a map, or their parts, that are within a regime, as polygons up to its boundaries. `name`: of a regime, or 'yielding'.
-    Partial slip is what the others leave: it has no polygons of its own."""
+    """The cells of a map, or their parts, that are within a regime, as polygons up to its boundaries; of failed cases all cells
+    around them. `name`: of a regime, or 'yielding'. Partial slip is what the others leave: it has no polygons of its own."""
     names = table.attrs["map_axes"]
     axes = [table[one].values for one in names]
+    if name == FAILED:
+        fails = table["regime"].values == FAILED
+        any_of_four = fails[:-1, :-1] | fails[1:, :-1] | fails[:-1, 1:] | fails[1:, 1:]
+        x, y = axes
+        return [
+            [(x[i], y[j]), (x[i + 1], y[j]), (x[i + 1], y[j + 1]), (x[i], y[j + 1])] for i, j in zip(*np.nonzero(any_of_four))
+        ]
     if name == YIELDING:
         inside = table["yields"].values.astype(float)
     else:
         regime = table["regime"].values
-        unknown = (FAILED,) if name in (OPEN, FAILED) else (OPEN, FAILED)
-        inside = np.where(np.isin(regime, unknown) & (regime != name), np.nan, regime == name)
+        unknown = (FAILED,) if name == OPEN else (OPEN, FAILED)
+        inside = np.where(np.isin(regime, unknown), np.nan, regime == name)
     at = {}
     for number in np.flatnonzero(table["boundary"].values == name):
         values = [float(table[f"boundary_{one}"].values[number]) for one in names]
