@@ -9,6 +9,8 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from .._files import PICTURES, target, written
 from ..studies.executors import NAMES
 from ..studies.maps import LIFE, STICK_RATIO, TOLERANCE, WEAR_RATE
@@ -51,12 +53,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     complete_files(parser.add_argument("file", type=Path, metavar="CASE.nml", help="the case"), "nml")
     parser.add_argument(
-        "--over", type=_axes, metavar="X,Y", help="the axes, each with its range or without: Q=0:300,P (Q,P by default; D,P without Q)"
+        "--over",
+        type=_axes,
+        metavar="X,Y",
+        help="the axes, each with its range or without: Q=0:300,P (Q,P by default; D,P without Q)",
     )
     parser.add_argument("--points", type=_points, default=(50, 50), metavar="NxM", help="points along the axes (50x50)")
     column = parser.add_argument(
         "--contour",
-        default="cycle_dissipation",
         metavar="COLUMN",
         help=f"column of the contour lines: an observable, {WEAR_RATE} or {LIFE} (cycle_dissipation)",
     )
@@ -79,7 +83,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     complete_files(material, "csv")
     parser.add_argument(
-        "--parameter", default="Smith-Watson-Topper", metavar="NAME", help="of the life: Smith-Watson-Topper (the default), Fatemi-Socie, ..."
+        "--parameter",
+        default="Smith-Watson-Topper",
+        metavar="NAME",
+        help="of the life: Smith-Watson-Topper (the default), Fatemi-Socie, ...",
     )
     executor = parser.add_argument("--executor", default="threads", metavar="NAME", help="as of 'mfv study' (threads by default)")
     complete_words(executor, lambda: NAMES)
@@ -176,13 +183,14 @@ def report(table: xarray.Dataset) -> str:
     of = table["boundary"].values
     for name in dict.fromkeys(of):
         here = table.isel(crossing=of == name)
-        values = [here[f"boundary_{axis}"].values for axis in table.attrs["map_axes"]]
-        along = here["boundary_along"].values == table.attrs["map_axes"][0]
-        relative = here["boundary_tolerance"].values / abs(values[0]).clip(1e-300) * along
-        relative += here["boundary_tolerance"].values / abs(values[1]).clip(1e-300) * ~along
+        relative = max(
+            float((of_axis["boundary_tolerance"] / np.maximum(abs(of_axis[f"boundary_{axis}"]), np.diff(table[axis]).min())).max())
+            for axis in table.attrs["map_axes"]
+            if (of_axis := here.isel(crossing=here["boundary_along"].values == axis)).sizes["crossing"]
+        )
         doubt = int((here["boundary_resolved"].values == 0).sum())
         note = f", {doubt} of them not resolved by the mesh" if doubt else ""
-        lines.append(f"boundary of {name}: {along.size} points{note}, within {relative.max():.1e} of the load")
+        lines.append(f"boundary of {name}: {here.sizes['crossing']} points{note}, within {relative:.1e} of the load")
     column = table.attrs["map_contour"]
     doubtful = int(flagged(table, column).values.sum())
     if doubtful:

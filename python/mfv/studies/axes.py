@@ -29,7 +29,7 @@ class Axis:
 
     keys: str | Sequence[str]
     values: Iterable[Any]
-    factors: Sequence[float | Sequence[float]] | None = None
+    factors: Sequence[Any] | None = None
 
 
 def fault(message: str, axis: int, part: str) -> MfvError:
@@ -42,9 +42,7 @@ def fault(message: str, axis: int, part: str) -> MfvError:
 class Coordinate:
     """A named list of values along a dimension, and the keys that take them."""
 
-    def __init__(
-        self, name: str, keys: Sequence[str], values: Iterable[Any], factors: Sequence[float | Sequence[float]] | None = None
-    ) -> None:
+    def __init__(self, name: str, keys: Sequence[str], values: Iterable[Any], factors: Sequence[Any] | None = None) -> None:
         """Raises InputError."""
         self.name = name
         self.keys = tuple(_in_one_form(key) for key in keys)

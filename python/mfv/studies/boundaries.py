@@ -54,8 +54,11 @@ class Crossing:
     #: The best of the cases of each round: value of the axis and of the sample.
     _best: list[tuple[float, float]] = field(default_factory=list)
     _width: float = math.inf
+    _size: float = 0.0
 
     def __post_init__(self) -> None:
+        small, large = sorted((abs(self.lower), abs(self.upper)))
+        self._size = small if self.lower * self.upper > 0.0 else large
         self._best = sorted(((self.lower, self.at_lower.value), (self.upper, self.at_upper.value)), key=lambda one: -abs(one[1]))
 
     @property
@@ -74,9 +77,8 @@ class Crossing:
         return not (self.at_lower if self.at_lower.is_inside else self.at_upper).flagged
 
     def is_found(self, tolerance: float) -> bool:
-        """Whether nothing is left to do. `tolerance`: relative to the value of the axis."""
-        small = self.tolerance <= tolerance * max(abs(self.lower), abs(self.upper))
-        return small or self.has_failed or self.rounds >= ROUNDS
+        """Whether nothing is left to do. `tolerance`: relative to the values of the axis around."""
+        return self.tolerance <= tolerance * self._size or self.has_failed or self.rounds >= ROUNDS
 
     def trials(self, tolerance: float) -> list[float]:
         """Values of the axis to be solved next: two close to an estimate, one on either side; the middle if there is no estimate or if the
@@ -86,7 +88,7 @@ class Crossing:
         estimate = self._estimate()
         if not self.lower < estimate < self.upper:
             return [middle]
-        step = CLOSE * tolerance * max(abs(self.lower), abs(self.upper))
+        step = CLOSE * tolerance * self._size
         pair = [one for one in (estimate - step, estimate + step) if self.lower < one < self.upper]
         return [*pair, middle] if width > 0.5 * self._width else pair
 
@@ -125,11 +127,13 @@ def crossings(name: str, axes: Sequence[Sequence[float]], samples: NDArray[Any])
         shape = list(samples.shape)
         shape[along] -= 1
         for place in np.ndindex(*shape):
-            lower, upper = samples[place], samples[place[0] + (along == 0), place[1] + (along == 1)]
+            lower = samples.item(place)
+            upper = samples.item(place[0] + (along == 0), place[1] + (along == 1))
             if not math.isnan(lower.value + upper.value) and lower.is_inside != upper.is_inside:
                 values = axes[along]
                 start, end = values[place[along]], values[place[along] + 1]
-                found.append(Crossing(name, along, (place[0], place[1]), axes[1 - along][place[1 - along]], start, end, lower, upper))
+                fixed = axes[1 - along][place[1 - along]]
+                found.append(Crossing(name, along, (place[0], place[1]), fixed, start, end, lower, upper))
     return found
 
 
@@ -139,7 +143,7 @@ def refine(
     tolerance: float,
     is_done: Callable[[], object] = lambda: None,
 ) -> None:
-    """Narrow all crossings to a tolerance, relative to the value of the axis, or until a case fails. `solve`: the samples of a list of
+    """Narrow all crossings to a tolerance (see `Crossing.is_found`), or until a case fails. `solve`: the samples of a list of
     points of the map, each for its crossing. `is_done`: called for each crossing that is found."""
     left = list(found)
     while left:
@@ -162,7 +166,9 @@ class Cell(NamedTuple):
     crossings: list[int]
 
 
-def cells(axes: Sequence[Sequence[float]], inside: NDArray[Any], at: dict[tuple[int, int, int], tuple[int, float]]) -> Iterator[Cell]:
+def cells(
+    axes: Sequence[Sequence[float]], inside: NDArray[Any], at: dict[tuple[int, int, int], tuple[int, float]]
+) -> Iterator[Cell]:
     """The cells of a map of which a part is within a regime. `inside`: shape of the map, 1 within, 0 outside, NaN unknown. `at`: number and
     value of the crossing on a side, by its axis and the place of its first point."""
     corners = ((0, 0), (1, 0), (1, 1), (0, 1))

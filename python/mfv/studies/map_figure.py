@@ -85,14 +85,19 @@ def _axis(table: xarray.Dataset, name: str) -> str:
 
 
 def _fill(table: xarray.Dataset, axes: Axes) -> None:
-    """The fills of all regimes but partial slip; yielding and failed cases as hatches."""
+    """The fills of all regimes but partial slip; yielding and failed cases as hatches, which gross sliding hides."""
+    if "yields" in table:
+        axes.add_collection(
+            PolyCollection(polygons(table, YIELDING), facecolor="none", edgecolor="0.7", hatch="///", linewidth=0.0, zorder=0.6)
+        )
     for regime in (STICK, SLIDING, OPEN):
-        colour = FILLS[regime]
-        axes.add_collection(PolyCollection(polygons(table, regime), facecolor=colour, edgecolor=colour, linewidth=0.3, zorder=0.5))
-    for regime, hatch in ((FAILED, "xxx"), (YIELDING, "///")):
-        if regime == FAILED or "yields" in table:
-            style = {"facecolor": FILLS[FAILED] if regime == FAILED else "none", "edgecolor": "0.75", "hatch": hatch, "linewidth": 0.0}
-            axes.add_collection(PolyCollection(polygons(table, regime), zorder=0.6, **style))
+        colour, order = FILLS[regime], 0.5 if regime == STICK else 0.7
+        axes.add_collection(
+            PolyCollection(polygons(table, regime), facecolor=colour, edgecolor=colour, linewidth=0.3, zorder=order)
+        )
+    axes.add_collection(
+        PolyCollection(polygons(table, FAILED), facecolor=FILLS[FAILED], edgecolor="0.8", hatch="xxx", linewidth=0.0, zorder=0.8)
+    )
 
 
 def _draw_boundaries(table: xarray.Dataset, axes: Axes) -> None:
@@ -109,12 +114,13 @@ def _draw_contours(table: xarray.Dataset, name: str, axes: Axes) -> list[NDArray
     """Contour lines of a column where cases are complete, with their values; places of these as fractions of the axes."""
     values = np.where(table["outcome"].values == "complete", table[name].values.astype(float), np.nan)
     values = np.ma.masked_invalid(values)
-    levels, power = _levels(values.compressed())
+    levels = _levels(values.compressed())
     if not levels.size:
         return []
     across, up = table.attrs["map_axes"]
     lines = axes.contour(table[across].values, table[up].values, values.T, levels, colors=plot.NUMBERS, linewidths=0.8, zorder=2)
-    texts = axes.clabel(lines, fmt=lambda value: f"{value / 10.0**power:.4g}", fontsize=8)
+    power = _power(levels)
+    texts = axes.clabel(lines, fmt=lambda value: _written(value / 10.0**power), fontsize=8)
     for text in texts:
         text.set_path_effects([patheffects.withStroke(linewidth=2.0, foreground="white")])
     about = table[name].attrs
@@ -127,23 +133,37 @@ def _draw_contours(table: xarray.Dataset, name: str, axes: Axes) -> list[NDArray
     return [np.asarray(to_axes.transform(text.get_position())) for text in texts]
 
 
-def _levels(values: NDArray[Any]) -> tuple[NDArray[Any], int]:
-    """Levels of contours, and the power of ten that their labels leave out."""
+def _levels(values: NDArray[Any]) -> NDArray[Any]:
+    """Levels of contours; none if the values do not vary."""
     if values.size < 4 or not np.ptp(values) > 0.0:
-        return np.empty(0), 0
-    # A few percent of the values at either end would make levels of their own.
+        return np.empty(0)
+    # A few percent of the values at the lower end would make levels of their own.
     low, high = np.quantile(values, (0.03, 1.0))
     if low > 0.0 and high > WIDE * low:
         decades = range(int(np.floor(np.log10(low))), int(np.ceil(np.log10(high))) + 1)
-        rows = ([step * 10.0**decade for decade in decades for step in steps if low <= step * 10.0**decade <= high] for steps in STEPS)
-        levels = np.array(min(rows, key=lambda row: abs(len(row) - LEVELS)))
-    else:
-        levels = np.asarray(MaxNLocator(LEVELS).tick_values(low, high))
-        levels = levels[(levels > low) & (levels < high)]
-    if not levels.size:
-        return levels, 0
-    power = int(np.floor(np.log10(np.max(np.abs(levels)))))
-    return levels, power if abs(power) > 2 else 0
+        rows = (
+            [step * 10.0**decade for decade in decades for step in steps if low <= step * 10.0**decade <= high] for steps in STEPS
+        )
+        return np.array(min(rows, key=lambda row: abs(len(row) - LEVELS)))
+    levels: NDArray[Any] = np.asarray(MaxNLocator(LEVELS).tick_values(low, high))
+    inner: NDArray[Any] = levels[(levels > low) & (levels < high)]
+    return inner
+
+
+def _power(levels: NDArray[Any]) -> int:
+    """The power of ten that the labels of levels leave out: 0 for usual numbers, and for those of many decades."""
+    sizes = np.log10(np.abs(levels[levels != 0.0]))
+    largest = int(np.floor(sizes.max()))
+    return largest if abs(largest) > 2 and np.ptp(sizes) < 2.5 else 0
+
+
+def _written(value: float) -> str:
+    """A number as the label of a contour line."""
+    if value == 0.0 or 1.0e-3 <= abs(value) < 1.0e4:
+        return f"{value:.4g}"
+    power = int(np.floor(np.log10(abs(value)) + 1.0e-9))
+    digits = f"{value / 10.0**power:.3g}"
+    return f"$10^{{{power}}}$" if digits == "1" else rf"${digits}\cdot10^{{{power}}}$"
 
 
 def _mark_doubt(table: xarray.Dataset, name: str, axes: Axes) -> None:
@@ -155,20 +175,23 @@ def _mark_doubt(table: xarray.Dataset, name: str, axes: Axes) -> None:
         return
     across, up = table.attrs["map_axes"]
     i, j = np.nonzero(doubtful)
-    style = {"markersize": 2.4, "markerfacecolor": "white", "markeredgecolor": DOUBT, "markeredgewidth": 0.5}
-    axes.plot(table[across].values[i], table[up].values[j], "o", zorder=1.5, clip_on=False, label="in doubt: see its warnings", **style)
+    style: dict[str, Any] = {"markersize": 2.4, "markerfacecolor": "white", "markeredgecolor": DOUBT, "markeredgewidth": 0.5}
+    axes.plot(
+        table[across].values[i], table[up].values[j], "o", zorder=1.5, clip_on=False, label="in doubt: see its warnings", **style
+    )
     axes.figure.legend(loc="outside lower right", fontsize=8, handletextpad=0.2, borderpad=0.0)
 
 
 def _name_regimes(table: xarray.Dataset, axes: Axes, texts: Sequence[NDArray[Any]]) -> None:
-    """The name of every regime within it, far from its boundaries and from `texts`."""
+    """The name of every regime within it, far from all boundaries and from `texts`."""
     across, up = (np.linspace(0.0, 1.0, table.sizes[table[name].dims[0]]) for name in table.attrs["map_axes"])
     places = np.stack(np.meshgrid(across, up, indexing="ij"), axis=-1)
     regime = table["regime"].values
+    yields = table["yields"].values > 0.0 if "yields" in table else np.zeros(regime.shape, dtype=bool)
     named = [(str(one), regime == one) for one in np.unique(regime.astype(str))]
-    if "yields" in table:
-        named.append((YIELDING, table["yields"].values > 0.0))
-    taken = list(texts)
+    named = [(name, inside & ~yields if (inside & ~yields).any() else inside) for name, inside in named] + [(YIELDING, yields)]
+    lines = [table[f"boundary_{name}"].values for name in table.attrs["map_axes"]]
+    taken = [*texts, *axes.transLimits.transform(np.column_stack(lines))]
     edges = np.array([[0.0, 0.0], [1.0, 1.0]])
     for name, inside in named:
         if not inside.any():
@@ -182,5 +205,7 @@ def _name_regimes(table: xarray.Dataset, axes: Axes, texts: Sequence[NDArray[Any
             space = np.minimum(space, np.sqrt(np.min(np.sum(apart**2, axis=2), axis=1)))
         place = here[int(np.argmax(space))]
         taken.append(place)
-        text = axes.text(*place, name, transform=axes.transAxes, ha="center", va="center", fontsize=10, zorder=3)
+        text = axes.text(
+            float(place[0]), float(place[1]), name, transform=axes.transAxes, ha="center", va="center", fontsize=10, zorder=3
+        )
         text.set_path_effects([patheffects.withStroke(linewidth=2.5, foreground=FILLS.get(name, "white"))])

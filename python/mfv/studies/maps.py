@@ -13,14 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._observer import progress_bar
-from ..case import Case
 from .._suggestions import suggestion
+from ..case import Case
 from ..errors import input_error
 from ..scene import created
 from . import boundaries, executors
 from .bases import Given, base_of
 from .boundaries import Crossing, Sample
-from .cases import _reading, observables, one_blas_thread, scene_handle
+from .cases import observables, one_blas_thread, reading, scene_handle
 from .map_axes import Loads, loads_of, map_axis, usual_axes, with_history_in_text
 from .plan import Study
 
@@ -55,7 +55,7 @@ def regime_map(
     over: Mapping[str, Any] | Sequence[str] | None = None,
     points: int | tuple[int, int] = 50,
     *,
-    contour: str = "cycle_dissipation",
+    contour: str | None = None,
     stick_ratio: float = STICK_RATIO,
     tolerance: float = TOLERANCE,
     wear_coefficient: float | None = None,
@@ -83,22 +83,35 @@ def regime_map(
     cycle, or the case ends in gross sliding. yielding: the largest von Mises stress reaches the yield strength. open: no contact at the end
     or at a turning point of the last cycle, or the case ends with separated bodies. Without cycles the whole load history counts.
 
-    `contour`: the column that `mfv.studies.map_figure.figure` draws. `tolerance`: of boundaries, relative. `executor`, `workers`, `store`,
+    `contour`: the column that `mfv.studies.map_figure.figure` draws; by default cycle_dissipation, without cycles dissipation. `tolerance`: of boundaries, relative. `executor`, `workers`, `store`,
     `again`, `progress`: as in `Study.run`; a store also has the cases of the boundaries. Raises InputError, FileError, OSError.
     """
     plan = _Plan(case, over, points, stick_ratio, tolerance)
-    plan.check_contour(contour, wear_coefficient, material, parameter)
+    column = plan.usual_contour() if contour is None else contour
+    plan.check_contour(column, wear_coefficient, material, parameter)
     executors.check(executor, workers)
-    run = {"store": store, "progress": progress}
     with executors.opened(executor, workers) as pool:
-        table = plan.grid.run(executor=pool, again=again, **run)
+        table = plan.grid.run(executor=pool, store=store, again=again, progress=progress)
         found = plan.boundaries(table, functools.partial(_solved, executor=pool, store=store), progress)
     table = table.assign(plan.columns(table))
     if plan.has_wear(wear_coefficient):
         table[WEAR_RATE] = plan.wear_rate(table, wear_coefficient)
     if material is not None:
         table = table.assign(plan.lives(table, material, parameter))
-    return plan.with_boundaries(table, found).assign_attrs(plan.attributes(contour))
+    table["unresolved"] = table["unresolved"].copy(data=_with_derived(table["unresolved"].values))
+    return plan.with_boundaries(table, found).assign_attrs(plan.attributes(column))
+
+
+def _with_derived(unresolved: NDArray[Any]) -> NDArray[Any]:
+    """The names of columns that are not resolved, with those that a map computes from them."""
+    origins = {WEAR_RATE: "cycle_dissipation", LIFE: "largest_lower_tension"}
+
+    def extended(names: str) -> str:
+        there = names.split()
+        return " ".join([*there, *(name for name, origin in origins.items() if origin in there)])
+
+    found: NDArray[Any] = np.vectorize(extended, otypes=[object])(unresolved)
+    return found
 
 
 def _solved(study: Study, executor: Executor, store: str | os.PathLike[str] | None) -> xarray.Dataset:
@@ -159,7 +172,9 @@ class _Plan:
         slides = regime == SLIDING
         stick = np.where(slides, 0.0, table["smallest_stick_ratio"].values)
         found = {
-            SLIDING: _samples(np.where(is_known, _signs(slides), np.nan), is_unresolved & (stick > 0.0), self._expected_sliding(table)),
+            SLIDING: _samples(
+                np.where(is_known, _signs(slides), np.nan), is_unresolved & (stick > 0.0), self._expected_sliding(table)
+            ),
             STICK: _samples(np.where(is_known, stick - self.stick_ratio, np.nan), is_unresolved, is_smooth=True),
             OPEN: _samples(np.where(regime == FAILED, np.nan, _signs(regime == OPEN))),
         }
@@ -241,16 +256,25 @@ class _Plan:
             found["yields"] = (dimensions, np.where(np.isnan(over), np.nan, over >= 0.0), about)
         return found
 
+    def usual_contour(self) -> str:
+        """The dissipation of the last cycle, or without cycles that of all steps."""
+        has_cycles = any(key.endswith("%cycles") and value > 0 for key, value in self.loads.keys.items())
+        return "cycle_dissipation" if has_cycles or "history%period" in self.loads.keys else "dissipation"
+
     def check_contour(self, contour: str, wear_coefficient: float | None, material: PadTest | None, parameter: str) -> None:
         """Raises InputError for a column that the map cannot have."""
         if wear_coefficient is not None and not 0.0 < wear_coefficient < math.inf:
-            raise input_error(f"wear_coefficient={wear_coefficient:g}: must be above 0, in length^2/force: depth per pressure and slip")
+            raise input_error(
+                f"wear_coefficient={wear_coefficient:g}: must be above 0, in length^2/force: depth per pressure and slip"
+            )
         if contour == WEAR_RATE and not self.has_wear(wear_coefficient):
             raise input_error(
                 f"{self.loads.name}: {WEAR_RATE} needs a wear coefficient: add &wear coefficient=..., or give --wear-coefficient K"
             )
         if contour == LIFE and material is None:
-            raise input_error(f"{LIFE} needs a strain-life curve: give --material TABLE.csv, a table as of 'mfv fatigue --new TABLE.csv'")
+            raise input_error(
+                f"{LIFE} needs a strain-life curve: give --material TABLE.csv, a table as of 'mfv fatigue --new TABLE.csv'"
+            )
         if material is not None:
             self._check_material(material, parameter)
         known = (*observables(), WEAR_RATE, LIFE)
@@ -265,7 +289,9 @@ class _Plan:
             raise input_error(f"parameter '{parameter}': must be one of {', '.join(PARAMETERS)}")
         units = self.grid.units
         if (units["length"], units["force"]) != ("mm", "N"):
-            raise input_error(f"{self.loads.name}: {LIFE} needs a case in mm and N, as the material: length_unit='mm', force_unit='N'")
+            raise input_error(
+                f"{self.loads.name}: {LIFE} needs a case in mm and N, as the material: length_unit='mm', force_unit='N'"
+            )
         modulus, of_material = self.loads.keys.get("body(1)%youngs_modulus"), material["youngs_modulus"]
         if modulus is not None and abs(modulus / of_material - 1.0) > SAME_MODULUS:
             raise input_error(
@@ -288,34 +314,40 @@ class _Plan:
             law = self.loads.keys.get("friction%law", "coulomb")
             mu = self._of_key({"coulomb": "friction%mu", "static_kinetic": "friction%mu_kinetic"}.get(law, ""), table)
             if mu is None:
-                raise input_error(f"{self.loads.name}: {WEAR_RATE} needs one coefficient of friction: law='coulomb' with a number for mu")
-        unit = "{length}^2".format(**self.grid.units)
+                raise input_error(
+                    f"{self.loads.name}: {WEAR_RATE} needs one coefficient of friction: law='coulomb' with a number for mu"
+                )
+        unit = f"{self.grid.units['length']}^2"
         about = {"long_name": "area worn off both surfaces per cycle", "units": unit}
         return table["cycle_dissipation"].dims, k * table["cycle_dissipation"].values / mu, about
 
     def lives(self, table: xarray.Dataset, material: PadTest, parameter: str) -> dict[str, Any]:
         """The life at the place of the largest tension along the lower surface [cycles], at up to 13 points along either axis, which
-        `life_solved` marks; between them its logarithm is interpolated linearly, NaN next to a point without."""
-        from ..fatigue.lives import LONGEST_LIFE
-
+        `life_solved` marks; between them its logarithm is interpolated linearly, NaN next to a point
+        without a finite one."""
         places = [np.unique(np.linspace(0, len(one) - 1, min(len(one), LIVES)).round().astype(int)) for one in self.values]
-        logarithms = np.full([len(one) for one in places], np.nan)
+        lives = np.full([len(one) for one in places], np.nan)
         with one_blas_thread():
-            for at in np.ndindex(*logarithms.shape):
+            for at in np.ndindex(*lives.shape):
                 place = places[0][at[0]], places[1][at[1]]
                 x = float(table["largest_lower_tension_x"].values[place])
                 if table["outcome"].values[place] == "complete" and math.isfinite(x):
-                    logarithms[at] = math.log10(min(self._life(int(table["case"].values[place]), x, material, parameter), LONGEST_LIFE))
+                    lives[at] = self._life(int(table["case"].values[place]), x, material, parameter)
+        logarithms = np.log10(np.where(np.isfinite(lives), lives, np.nan))
         rows = np.array([np.interp(range(len(self.values[0])), places[0], column) for column in logarithms.T])
         life = 10.0 ** np.array([np.interp(range(len(self.values[1])), places[1], row) for row in rows.T])
         solved = np.zeros(life.shape, dtype=np.int8)
         solved[np.ix_(*places)] = 1
-        life[life >= 0.999 * LONGEST_LIFE] = np.inf
+        life[np.ix_(*places)] = lives
         dimensions = table["case"].dims
         about = {"long_name": f"life by {parameter} at the largest tension of the lower surface", "units": "cycles"}
         return {
             LIFE: (dimensions, life, about),
-            "life_solved": (dimensions, solved, {"long_name": "1 where life is computed, 0 where it is interpolated", "units": "1"}),
+            "life_solved": (
+                dimensions,
+                solved,
+                {"long_name": "1 where life is computed, 0 where it is interpolated", "units": "1"},
+            ),
         }
 
     def _life(self, number: int, x: float, material: PadTest, parameter: str) -> float:
@@ -324,7 +356,7 @@ class _Plan:
 
         job = self.grid.job(number)
         settings = (*job.settings, ("output%states", "last_cycle"), ("output%history", "none"))
-        with scene_handle(job.base, settings) as scene, _reading(job.base, settings):
+        with scene_handle(job.base, settings) as scene, reading(job.base, settings):
             handle = created("mfv_create", scene)
         with Case._of_handle(handle) as case:
             case.run()
@@ -339,13 +371,27 @@ class _Plan:
         columns: dict[str, tuple[Any, str, str]] = {
             "boundary": (np.array([one.name for one in ordered], dtype=object), "1", "regime on one side of the boundary"),
             "boundary_curve": (np.array(curve, dtype=np.int32), "1", "number of the curve, from 1"),
-            "boundary_along": (np.array([self.names[one.along] for one in ordered], dtype=object), "1", "axis along which it was found"),
+            "boundary_along": (
+                np.array([self.names[one.along] for one in ordered], dtype=object),
+                "1",
+                "axis along which it was found",
+            ),
             "boundary_tolerance": (np.array([one.tolerance for one in ordered]), "1", "half the bracket, in the unit of that axis"),
-            "boundary_resolved": (np.array([one.is_resolved for one in ordered], dtype=np.int8), "1", "0: the mesh does not resolve it"),
+            "boundary_resolved": (
+                np.array([one.is_resolved for one in ordered], dtype=np.int8),
+                "1",
+                "0: the mesh does not resolve it",
+            ),
         }
         for name, of_axis in zip(self.names, values):
-            columns[f"boundary_{name}"] = np.array(of_axis, dtype=float), table[name].attrs.get("units", "1"), f"{name} at the boundary"
-        return table.assign({name: ("crossing", of, {"units": unit, "long_name": meaning}) for name, (of, unit, meaning) in columns.items()})
+            columns[f"boundary_{name}"] = (
+                np.array(of_axis, dtype=float),
+                table[name].attrs.get("units", "1"),
+                f"{name} at the boundary",
+            )
+        return table.assign(
+            {name: ("crossing", of, {"units": unit, "long_name": meaning}) for name, (of, unit, meaning) in columns.items()}
+        )
 
     def _ordered(self, table: xarray.Dataset, found: Sequence[Crossing]) -> tuple[list[int], list[int]]:
         """The numbers of the crossings in the order of their curves, and the numbers of these. A closed curve has its first point twice;
@@ -385,17 +431,15 @@ def _inside(values: NDArray[Any]) -> NDArray[Any]:
 def polygons(table: xarray.Dataset, name: str) -> list[list[tuple[float, float]]]:
     """The cells of a map, or their parts, that are within a regime, as polygons up to its boundaries; of failed cases all cells
     around them. `name`: of a regime, or 'yielding'. Partial slip is what the others leave: it has no polygons of its own."""
-    names = table.attrs["map_axes"]
+    names = list(table.attrs["map_axes"])
     axes = [table[one].values for one in names]
     if name == FAILED:
         fails = table["regime"].values == FAILED
         any_of_four = fails[:-1, :-1] | fails[1:, :-1] | fails[:-1, 1:] | fails[1:, 1:]
         x, y = axes
-        return [
-            [(x[i], y[j]), (x[i + 1], y[j]), (x[i + 1], y[j + 1]), (x[i], y[j + 1])] for i, j in zip(*np.nonzero(any_of_four))
-        ]
+        return [[(x[i], y[j]), (x[i + 1], y[j]), (x[i + 1], y[j + 1]), (x[i], y[j + 1])] for i, j in zip(*np.nonzero(any_of_four))]
     if name == YIELDING:
-        inside = table["yields"].values.astype(float)
+        inside = _continued(table["yields"].values.astype(float))
     else:
         regime = table["regime"].values
         unknown = (FAILED,) if name == OPEN else (OPEN, FAILED)
@@ -404,9 +448,21 @@ def polygons(table: xarray.Dataset, name: str) -> list[list[tuple[float, float]]
     for number in np.flatnonzero(table["boundary"].values == name):
         values = [float(table[f"boundary_{one}"].values[number]) for one in names]
         along = names.index(str(table["boundary_along"].values[number]))
-        place = [int(np.searchsorted(axis, value, "right" if k != along else "left")) - 1 for k, (axis, value) in enumerate(zip(axes, values))]
+        place = [
+            int(np.searchsorted(axis, value, "right" if k != along else "left")) - 1
+            for k, (axis, value) in enumerate(zip(axes, values))
+        ]
         at[along, place[0], place[1]] = int(number), values[along]
     return [cell.polygon for cell in boundaries.cells(axes, inside, at)]
+
+
+def _continued(inside: NDArray[Any]) -> NDArray[Any]:
+    """An array of 1, 0 and NaN in which a NaN whose known neighbours all have one value has this value, too."""
+    padded = np.pad(inside, 1, constant_values=np.nan)
+    shape = inside.shape
+    around = np.array([padded[i : i + shape[0], j : j + shape[1]] for i in range(3) for j in range(3)])
+    lowest, highest = np.fmin.reduce(around), np.fmax.reduce(around)
+    return np.where(np.isnan(inside) & (lowest == highest), lowest, inside)
 
 
 def _fraction(name: str, value: float) -> float:
