@@ -471,7 +471,7 @@ def test_a_misspelled_command_has_a_proposal(capsys: pytest.CaptureFixture[str])
 
 
 @pytest.mark.parametrize(
-    "command", ["new", "plot", "info", "compare", "animate", "report", "study", "identify", "profile", "fatigue"]
+    "command", ["new", "plot", "info", "compare", "animate", "report", "study", "map", "identify", "profile", "fatigue"]
 )
 def test_every_command_teaches(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as caught:
@@ -581,7 +581,7 @@ def test_new_takes_the_name_of_a_file(tmp_path: Path, monkeypatch: pytest.Monkey
     [
         (
             "mfv ",
-            {"new", "run", "plot", "info", "stress", "compare", "animate", "report", "study", "identify", "profile", "fatigue"},
+            {"new", "run", "plot", "info", "stress", "compare", "animate", "report", "study", "map", "identify", "profile", "fatigue"},
         ),
         ("mfv run s", {"s.nml"}),
         ("mfv run --res", {"--resume"}),

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from ..fatigue.comparison import PadTest
 
-NAME, HELP = "map", "regimes of a case over two loads: stick, partial slip, gross sliding, yielding"
+NAME, HELP = "map", "regimes of a case over two loads, with boundaries"
 
 DESCRIPTION = """\
 Solve a case over a grid of two of its loads, and find the boundaries of the regimes of its last cycle between them: stick,
