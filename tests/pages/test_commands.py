@@ -581,7 +581,21 @@ def test_new_takes_the_name_of_a_file(tmp_path: Path, monkeypatch: pytest.Monkey
     [
         (
             "mfv ",
-            {"new", "run", "plot", "info", "stress", "compare", "animate", "report", "study", "map", "identify", "profile", "fatigue"},
+            {
+                "new",
+                "run",
+                "plot",
+                "info",
+                "stress",
+                "compare",
+                "animate",
+                "report",
+                "study",
+                "map",
+                "identify",
+                "profile",
+                "fatigue",
+            },
         ),
         ("mfv run s", {"s.nml"}),
         ("mfv run --res", {"--resume"}),

@@ -83,8 +83,9 @@ def regime_map(
     cycle, or the case ends in gross sliding. yielding: the largest von Mises stress reaches the yield strength. open: no contact at the end
     or at a turning point of the last cycle, or the case ends with separated bodies. Without cycles the whole load history counts.
 
-    `contour`: the column that `mfv.studies.map_figure.figure` draws; by default cycle_dissipation, without cycles dissipation. `tolerance`: of boundaries, relative. `executor`, `workers`, `store`,
-    `again`, `progress`: as in `Study.run`; a store also has the cases of the boundaries. Raises InputError, FileError, OSError.
+    `contour`: the column that `mfv.studies.map_figure.figure` draws; by default cycle_dissipation, without cycles dissipation.
+    `tolerance`: of boundaries, relative. `executor`, `workers`, `store`, `again`, `progress`: as in `Study.run`; a store also has the
+    cases of the boundaries. Raises InputError, FileError, OSError.
     """
     plan = _Plan(case, over, points, stick_ratio, tolerance)
     column = plan.usual_contour() if contour is None else contour
