@@ -268,6 +268,7 @@ def test_curves_join_their_points():
         ({"contour": "cycle_disipation"}, "did you mean cycle_dissipation?"),
         ({"contour": "wear_rate"}, "add &wear coefficient"),
         ({"contour": "life"}, "--material"),
+        ({"wear_coefficient": 1.0, "over": {"Q": None, "friction%mu": None}, "contour": "dissipation_"}, "not a column of a map"),
         ({"stick_ratio": 1.5}, "stick_ratio=1.5: must be above 0 and at most 1"),
         ({"wear_coefficient": -1.0}, "wear_coefficient=-1: must be above 0"),
     ],

@@ -21,7 +21,7 @@ from . import boundaries, executors
 from .bases import Given, base_of
 from .boundaries import Crossing, Sample
 from .cases import observables, one_blas_thread, reading, scene_handle
-from .map_axes import Loads, loads_of, map_axis, usual_axes, with_history_in_text
+from .map_axes import SHORT, Loads, loads_of, map_axis, usual_axes, with_history_in_text
 from .plan import Study
 
 if TYPE_CHECKING:
@@ -99,20 +99,20 @@ def regime_map(
         table[WEAR_RATE] = plan.wear_rate(table, wear_coefficient)
     if material is not None:
         table = table.assign(plan.lives(table, material, parameter))
-    table["unresolved"] = table["unresolved"].copy(data=_with_derived(table["unresolved"].values))
-    return plan.with_boundaries(table, found).assign_attrs(plan.attributes(column))
+    return plan.with_boundaries(_with_flags(table), found).assign_attrs(plan.attributes(column))
 
 
-def _with_derived(unresolved: NDArray[Any]) -> NDArray[Any]:
-    """The names of columns that are not resolved, with those that a map computes from them."""
+def _with_flags(table: xarray.Dataset) -> xarray.Dataset:
+    """The table in which columns that a map computes are not resolved where those from which they are computed are not."""
     origins = {WEAR_RATE: "cycle_dissipation", LIFE: "largest_lower_tension"}
+    columns = {name: origin for name, origin in origins.items() if name in table}
 
     def extended(names: str) -> str:
         there = names.split()
-        return " ".join([*there, *(name for name, origin in origins.items() if origin in there)])
+        return " ".join([*there, *(name for name, origin in columns.items() if origin in there)])
 
-    found: NDArray[Any] = np.vectorize(extended, otypes=[object])(unresolved)
-    return found
+    values = np.vectorize(extended, otypes=[object])(table["unresolved"].values)
+    return table.assign(unresolved=table["unresolved"].copy(data=values))
 
 
 def _solved(study: Study, executor: Executor, store: str | os.PathLike[str] | None) -> xarray.Dataset:
@@ -268,10 +268,19 @@ class _Plan:
             raise input_error(
                 f"wear_coefficient={wear_coefficient:g}: must be above 0, in length^2/force: depth per pressure and slip"
             )
-        if contour == WEAR_RATE and not self.has_wear(wear_coefficient):
-            raise input_error(
-                f"{self.loads.name}: {WEAR_RATE} needs a wear coefficient: add &wear coefficient=..., or give --wear-coefficient K"
-            )
+        if contour == WEAR_RATE or wear_coefficient is not None:
+            if self._wear_divisor is None:
+                raise input_error(
+                    f"{self.loads.name}: {WEAR_RATE} needs one coefficient of friction: law='coulomb' with a number for mu"
+                )
+            if not self.has_wear(wear_coefficient):
+                raise input_error(
+                    f"{self.loads.name}: {WEAR_RATE} needs a wear coefficient: add &wear coefficient=..., or give --wear-coefficient K"
+                )
+            if wear_coefficient is not None and "wear%coefficient" in self.loads.keys:
+                raise input_error(
+                    f"{self.loads.name}: wear_coefficient={wear_coefficient:g}: &wear has coefficient; give only one of them"
+                )
         if contour == LIFE and material is None:
             raise input_error(
                 f"{LIFE} needs a strain-life curve: give --material TABLE.csv, a table as of 'mfv fatigue --new TABLE.csv'"
@@ -288,6 +297,8 @@ class _Plan:
 
         if parameter not in PARAMETERS:
             raise input_error(f"parameter '{parameter}': must be one of {', '.join(PARAMETERS)}")
+        if self.usual_contour() != "cycle_dissipation":
+            raise input_error(f"{self.loads.name}: {LIFE} needs a cycle: give the last step cycles=1 or more")
         units = self.grid.units
         if (units["length"], units["force"]) != ("mm", "N"):
             raise input_error(
@@ -302,25 +313,27 @@ class _Plan:
 
     def has_wear(self, coefficient: float | None) -> bool:
         """Whether a wear rate is known."""
-        return coefficient is not None or "wear%coefficient" in self.loads.keys
+        return self._wear_divisor is not None and (coefficient is not None or "wear%coefficient" in self.loads.keys)
+
+    @functools.cached_property
+    def _wear_divisor(self) -> str | None:
+        """The key of the coefficient of friction by which dissipation is divided for the wear rate; empty for law='work', which needs
+        none; None if friction has no one coefficient."""
+        if self.loads.keys.get("wear%law") == "work":
+            return ""
+        keys = {"coulomb": "friction%mu", "static_kinetic": "friction%mu_kinetic"}
+        key = keys.get(self.loads.keys.get("friction%law", "coulomb"), "")
+        return key if key in self.loads.keys else None
 
     def wear_rate(self, table: xarray.Dataset, coefficient: float | None) -> Any:
         """The area worn per cycle: Archard's coefficient times the integral of pressure times slip, which is the dissipation over the
-        coefficient of friction; with law='work' times the dissipation. Raises InputError if friction has no one coefficient."""
+        coefficient of friction; with law='work' times the dissipation."""
+        assert self._wear_divisor is not None
         of_case = self._of_key("wear%coefficient", table)
-        k = coefficient if of_case is None else of_case
-        if self.loads.keys.get("wear%law") == "work":
-            mu: Any = 1.0
-        else:
-            law = self.loads.keys.get("friction%law", "coulomb")
-            mu = self._of_key({"coulomb": "friction%mu", "static_kinetic": "friction%mu_kinetic"}.get(law, ""), table)
-            if mu is None:
-                raise input_error(
-                    f"{self.loads.name}: {WEAR_RATE} needs one coefficient of friction: law='coulomb' with a number for mu"
-                )
-        unit = f"{self.grid.units['length']}^2"
-        about = {"long_name": "area worn off both surfaces per cycle", "units": unit}
-        return table["cycle_dissipation"].dims, k * table["cycle_dissipation"].values / mu, about
+        mu = self._of_key(self._wear_divisor, table) if self._wear_divisor else 1.0
+        about = {"long_name": "area worn off both surfaces per cycle", "units": f"{self.grid.units['length']}^2"}
+        work = table["cycle_dissipation"]
+        return work.dims, (coefficient if of_case is None else of_case) * work.values / mu, about
 
     def lives(self, table: xarray.Dataset, material: PadTest, parameter: str) -> dict[str, Any]:
         """The life at the place of the largest tension along the lower surface [cycles], at up to 13 points along either axis, which
@@ -390,6 +403,8 @@ class _Plan:
                 table[name].attrs.get("units", "1"),
                 f"{name} at the boundary",
             )
+        for name in {*self.names} & {*SHORT}:
+            table[name].attrs["long_name"] = SHORT[name][1]
         return table.assign(
             {name: ("crossing", of, {"units": unit, "long_name": meaning}) for name, (of, unit, meaning) in columns.items()}
         )
