@@ -107,8 +107,8 @@ def _as_program(program: str, arguments: list[str]) -> int:
 
 def _overview() -> str:
     """The commands, a line each, and how to begin; the manual page is made from it (docs/man)."""
-    about = (f"Two-dimensional frictional elastic contact, version {__version__}.", "'mfv COMMAND --help' explains each command.")
-    lines = ["usage: mfv COMMAND ...", "", *about, "", "Commands:"]
+    about = f"MFV {__version__}: two-dimensional frictional elastic contact. Help: mfv COMMAND --help"
+    lines = ["usage: mfv COMMAND ...", "", about, "", "Commands:"]
     lines += [f"  {module.NAME:10}{module.HELP}" for module in COMMANDS]
     steps = ("mfv new cylinder.nml", "mfv run cylinder.nml", "mfv plot cylinder.h5")
     meanings = ("write a commented case", "solve it, write cylinder.h5", "draw cylinder.png")

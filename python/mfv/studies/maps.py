@@ -337,8 +337,8 @@ class _Plan:
 
     def lives(self, table: xarray.Dataset, material: PadTest, parameter: str) -> dict[str, Any]:
         """The life at the place of the largest tension along the lower surface [cycles], at up to 13 points along either axis, which
-        `life_solved` marks; between them its logarithm is interpolated linearly, NaN next to a point
-        without a finite one."""
+        `life_solved` marks; between them it is interpolated, NaN next to a point without a finite
+        one."""
         places = [np.unique(np.linspace(0, len(one) - 1, min(len(one), LIVES)).round().astype(int)) for one in self.values]
         lives = np.full([len(one) for one in places], np.nan)
         with one_blas_thread():
@@ -348,8 +348,10 @@ class _Plan:
                 if table["outcome"].values[place] == "complete" and math.isfinite(x):
                     lives[at] = self._life(int(table["case"].values[place]), x, material, parameter)
         logarithms = np.log10(np.where(np.isfinite(lives), lives, np.nan))
-        rows = np.array([np.interp(range(len(self.values[0])), places[0], column) for column in logarithms.T])
-        life = 10.0 ** np.array([np.interp(range(len(self.values[1])), places[1], row) for row in rows.T])
+        # Lives are powers of loads, so logarithms of both are interpolated.
+        x, y = (np.log(one) if min(one) > 0.0 else np.asarray(one) for one in self.values)
+        rows = np.array([np.interp(x, x[places[0]], column) for column in logarithms.T])
+        life = 10.0 ** np.array([np.interp(y, y[places[1]], row) for row in rows.T])
         solved = np.zeros(life.shape, dtype=np.int8)
         solved[np.ix_(*places)] = 1
         life[np.ix_(*places)] = lives
