@@ -44,6 +44,18 @@ for example in joint_models hosts/joint_host; do
     "$venv/bin/python" "$root/examples/$example.py" -o "$pictures/${example#hosts/}.png"
 done
 PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so "$venv/bin/python" "$root/examples/identification.py" -o "$pictures/identify.png"
+# Regimes of a pad that can yield: some two minutes.
+PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so "$venv/bin/python" - "$root/examples/fretting_pad.nml" "$pictures" <<'END'
+import sys
+
+import mfv
+from mfv.studies import map_figure, regime_map
+
+pad = mfv.Scene.from_file(sys.argv[1])
+pad.lower.yield_strength = 250
+table = regime_map(pad, {"Q": (20, 500), "P": (200, 1000)}, points=33, stick_ratio=0.9)
+map_figure.figure(table).savefig(f"{sys.argv[2]}/map.png", dpi=150)
+END
 # Fatigue parameters below a pad.
 PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so "$venv/bin/python" - "$root/examples/fretting_fatigue.nml" "$pictures" <<'END'
 import sys

@@ -471,7 +471,8 @@ def test_a_misspelled_command_has_a_proposal(capsys: pytest.CaptureFixture[str])
 
 
 @pytest.mark.parametrize(
-    "command", ["new", "plot", "info", "compare", "animate", "report", "study", "identify", "profile", "loads", "fatigue"]
+    "command",
+    ["new", "plot", "info", "compare", "animate", "report", "study", "map", "identify", "profile", "loads", "fatigue"],
 )
 def test_every_command_teaches(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as caught:
@@ -591,6 +592,7 @@ def test_new_takes_the_name_of_a_file(tmp_path: Path, monkeypatch: pytest.Monkey
                 "animate",
                 "report",
                 "study",
+                "map",
                 "identify",
                 "profile",
                 "loads",

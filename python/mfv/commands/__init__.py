@@ -12,13 +12,13 @@ from .._packages import how_to_install
 from .._programs import become, message_of
 from .._suggestions import suggestion
 from ..errors import MfvError
-from . import animate, compare, fatigue, identify, info, loads, new, plot, profile, report, run, stress, study
+from . import animate, compare, fatigue, identify, info, loads, map, new, plot, profile, report, run, stress, study
 from .completion import complete
 
 UNUSABLE = 2  # exit code for unusable input, the same as that of mfv_run
 INTERRUPTED = 130  # exit code after Ctrl-C, the same as that of mfv_run
 
-COMMANDS = (new, run, plot, info, stress, compare, animate, report, study, identify, profile, loads, fatigue)
+COMMANDS = (new, run, plot, info, stress, compare, animate, report, study, map, identify, profile, loads, fatigue)
 
 #: Commands that are programs, with all their options.
 PROGRAMS = {module.NAME: module.PROGRAM for module in (run, stress)}
@@ -34,6 +34,7 @@ examples:
   mfv report mindlin.h5               write a web page, mindlin.html
   mfv study study.nml -o study.csv
                                       solve many cases, write one table
+  mfv map examples/mindlin.nml        regimes over tangential and normal force
   mfv identify rig.nml loops.csv --free friction%mu=0.6
                                       parameters from measured loops
   mfv profile scan.x3p -o scan.txt    a measured profile as a text for &body
@@ -107,7 +108,7 @@ def _as_program(program: str, arguments: list[str]) -> int:
 
 def _overview() -> str:
     """The commands, a line each, and how to begin; the manual page is made from it (docs/man)."""
-    about = f"Two-dimensional frictional contact, version {__version__}. Help: mfv COMMAND --help"
+    about = f"MFV {__version__}: two-dimensional frictional elastic contact. Help: mfv COMMAND --help"
     lines = ["usage: mfv COMMAND ...", "", about, "", "Commands:"]
     lines += [f"  {module.NAME:10}{module.HELP}" for module in COMMANDS]
     steps = ("mfv new cylinder.nml", "mfv run cylinder.nml", "mfv plot cylinder.h5")

@@ -120,7 +120,12 @@ def _draw_study(options: argparse.Namespace) -> None:
             f"{options.file}: the table of a study has no --stress, --cycles, --edges or --step; use --column and --over"
         )
     with xarray.open_dataset(options.file, engine="h5netcdf") as table:
-        picture = figure(table, options.column, options.over)
+        if "map_axes" in table.attrs and options.over is None:
+            from ..studies import map_figure
+
+            picture = map_figure.figure(table.load(), options.column)
+        else:
+            picture = figure(table, options.column, options.over)
     name = f"{options.file.stem}_{options.column}.png" if options.column else f"{options.file.stem}.png"
     output = target(options.output, options.file.with_name(name.replace("/", "_")), PICTURES, [options.file])
     with written(output) as part:

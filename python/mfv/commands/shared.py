@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import re
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -70,3 +71,13 @@ def solved_between(options: argparse.Namespace, result: Result, states: int) -> 
     if history.note:
         print(f"mfv: {options.file}: {history.note}", file=sys.stderr)
     return history
+
+
+class terminated_like_interrupted:
+    """Treat SIGTERM, which batch systems send before the end of a job, like Ctrl-C."""
+
+    def __enter__(self) -> None:
+        self._before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+
+    def __exit__(self, *_: object) -> None:
+        signal.signal(signal.SIGTERM, self._before)

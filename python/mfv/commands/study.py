@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import signal
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,7 +12,7 @@ from ..studies.executors import NAMES
 from ..studies.namelist import check_study, keys_in_markdown, read_study
 from ..studies.plan import SUFFIXES, Study, is_table
 from .completion import complete_files, complete_words
-from .shared import add_output, at_least
+from .shared import add_output, at_least, terminated_like_interrupted
 
 if TYPE_CHECKING:
     import xarray
@@ -105,7 +104,7 @@ def _solve(study: Study, output: Path, options: argparse.Namespace) -> int | Non
         table = study.so_far(kept)
     else:
         try:
-            with _terminated_like_interrupted():
+            with terminated_like_interrupted():
                 table = study.run(
                     executor=options.executor, workers=options.workers, store=kept, again=options.again, progress=True
                 )
@@ -126,16 +125,6 @@ def _output(study: Study, options: argparse.Namespace) -> Path:
     if path.suffix.lower() in SUFFIXES[:-1] and is_table(path):
         return path
     return target(options.output, usual, SUFFIXES, [options.file])
-
-
-class _terminated_like_interrupted:
-    """Treat SIGTERM, which batch systems send before the end of a job, like Ctrl-C."""
-
-    def __enter__(self) -> None:
-        self._before = signal.signal(signal.SIGTERM, signal.default_int_handler)
-
-    def __exit__(self, *_: object) -> None:
-        signal.signal(signal.SIGTERM, self._before)
 
 
 def _counted(table: xarray.Dataset) -> str:

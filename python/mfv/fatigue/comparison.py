@@ -10,6 +10,7 @@ import math
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -306,7 +307,7 @@ def predict(test: PadTest, nodes: int = 101) -> Prediction:
         lives = {
             (parameter, place): value
             for place in PLACES
-            for parameter, value in _lives(test, _cycle(result, x, place, test.critical_length)).items()
+            for parameter, value in lives(test, _cycle(result, x, place, test.critical_length)).items()
         }
     except ValueError as error:
         raise input_error(f"{about} has no predicted life: {error}") from None
@@ -318,8 +319,8 @@ def _cycle(result: Result, x: float, place: str, length: float) -> StressCycle:
     return stress_cycle(result, x, 0.0) if place == "hot spot" else averaged_cycle(result, x, length, method=place)  # type: ignore[arg-type]
 
 
-def _lives(test: PadTest, cycle: StressCycle) -> dict[str, float]:
-    """Lives by every parameter of a cycle at one point."""
+def lives(test: PadTest, cycle: StressCycle, parameters: Sequence[str] = PARAMETERS) -> dict[str, float]:
+    """Lives by every parameter, or some, of a cycle at one point, with the material of a test [cycles]."""
     curve = StrainLife(
         *(
             test[name]
@@ -331,13 +332,14 @@ def _lives(test: PadTest, cycle: StressCycle) -> dict[str, float]:
         constant(1.0, test["torsion_ratio"]) for constant in (findley_constant, crossland_constant, dang_van_constant)
     )
     pairs: dict[str, Any] = {
-        "Smith-Watson-Topper": (smith_watson_topper(cycle), curve.smith_watson_topper),
-        "Fatemi-Socie": (fatemi_socie(cycle, **plastic), lambda n: curve.fatemi_socie(n, **plastic)),
-        "Findley": (findley(cycle, k=k_findley), lambda n: curve.findley(n, k=k_findley)),
-        "Crossland": (crossland(cycle, k=k_crossland), lambda n: curve.crossland(n, k=k_crossland)),
-        "Dang Van": (dang_van(cycle, k=k_dang_van), lambda n: curve.dang_van(n, k=k_dang_van)),
+        "Smith-Watson-Topper": (smith_watson_topper, curve.smith_watson_topper),
+        "Fatemi-Socie": (partial(fatemi_socie, **plastic), lambda n: curve.fatemi_socie(n, **plastic)),
+        "Findley": (partial(findley, k=k_findley), lambda n: curve.findley(n, k=k_findley)),
+        "Crossland": (partial(crossland, k=k_crossland), lambda n: curve.crossland(n, k=k_crossland)),
+        "Dang Van": (partial(dang_van, k=k_dang_van), lambda n: curve.dang_van(n, k=k_dang_van)),
     }
-    return {name: float(life(found.maximum.value, of_test)) for name, (found, of_test) in pairs.items()}
+    chosen = {name: pairs[name] for name in parameters}
+    return {name: float(life(of_cycle(cycle).maximum.value, of_test)) for name, (of_cycle, of_test) in chosen.items()}
 
 
 def judge(predictions: Iterable[Prediction]) -> list[Verdict]:

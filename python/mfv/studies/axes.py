@@ -23,12 +23,13 @@ OF_MATERIALS = ("shear_modulus", "youngs_modulus", "poisson_ratio", "rigid")
 class Axis:
     """Values of one key of the case, or of several that change together, each multiplied by the factor of its key.
 
-    `keys`: such as 'friction%mu', or ['step(2)%force_ratio', 'step(3)%force_ratio'] with `factors` [1, -1].
+    `keys`: such as 'friction%mu', or ['step(2)%force_ratio', 'step(3)%force_ratio'] with `factors` [1, -1]. The factor of a key of
+    &history may be a list, with one factor per turning point.
     """
 
     keys: str | Sequence[str]
     values: Iterable[Any]
-    factors: Sequence[float] | None = None
+    factors: Sequence[Any] | None = None
 
 
 def fault(message: str, axis: int, part: str) -> MfvError:
@@ -41,7 +42,7 @@ def fault(message: str, axis: int, part: str) -> MfvError:
 class Coordinate:
     """A named list of values along a dimension, and the keys that take them."""
 
-    def __init__(self, name: str, keys: Sequence[str], values: Iterable[Any], factors: Sequence[float] | None = None) -> None:
+    def __init__(self, name: str, keys: Sequence[str], values: Iterable[Any], factors: Sequence[Any] | None = None) -> None:
         """Raises InputError."""
         self.name = name
         self.keys = tuple(_in_one_form(key) for key in keys)
@@ -53,13 +54,14 @@ class Coordinate:
             raise fault(f"{name}: no values given", 0, "values")
         check_name(name)
         for factor in self.factors:
-            if factor != 1:
-                self._check_products(factor)
+            for one in factor if isinstance(factor, Sequence) else [factor]:
+                if one != 1 or isinstance(factor, Sequence):
+                    self._check_products(one)
 
     def settings(self, place: int) -> list[tuple[str, Any]]:
         """The keys and their values at a place, from 0."""
         value = self.values[place]
-        return [(key, value if factor == 1 else value * factor) for key, factor in zip(self.keys, self.factors)]
+        return [(key, _times(value, factor)) for key, factor in zip(self.keys, self.factors)]
 
     def _check_products(self, factor: float) -> None:
         for value in self.values:
@@ -88,6 +90,13 @@ class Dimension:
 
     def __len__(self) -> int:
         return len(self.coordinates[0].values)
+
+
+def _times(value: Any, factor: float | Sequence[float]) -> Any:
+    """A value times its factor; a list for a list of factors."""
+    if isinstance(factor, Sequence):
+        return [value * one for one in factor]
+    return value if factor == 1 else value * factor
 
 
 def check_name(name: Any) -> None:

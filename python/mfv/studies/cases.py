@@ -142,7 +142,7 @@ def case_text(base: Base, settings: Sequence[tuple[str, Any]]) -> str:
 
 def check(base: Base, settings: Sequence[tuple[str, Any]]) -> None:
     """Raises InputError for an invalid case."""
-    with scene_handle(base, settings) as handle, _reading(base, settings):
+    with scene_handle(base, settings) as handle, reading(base, settings):
         library().mfv_free(byref(created("mfv_create", handle)))
 
 
@@ -152,7 +152,7 @@ def datums_of_case(base: Base, settings: Sequence[tuple[str, Any]]) -> dict[str,
     if not any(shape in text.lower() for shape in _datum.SHAPES for text in texts):
         return {}
     try:
-        with scene_handle(base, settings) as scene, _reading(base, settings):
+        with scene_handle(base, settings) as scene, reading(base, settings):
             handle = created("mfv_create", scene)
     except errors.InputError:
         return {}
@@ -215,7 +215,7 @@ def solve_here(stop: c_int | None, jobs: Sequence[Job]) -> tuple[float, list[Sol
 def solve_unless(stop: c_int | None, job: Job) -> Solved | None:
     """Solve a case; None if `stop` has been set meanwhile. Raises FileError if its result cannot be written."""
     try:
-        with scene_handle(job.base, job.settings) as scene, _reading(job.base, job.settings):
+        with scene_handle(job.base, job.settings) as scene, reading(job.base, job.settings):
             handle = created("mfv_create", scene)
     except errors.InputError as error:
         assert error.status is not None
@@ -231,7 +231,7 @@ def solve_unless(stop: c_int | None, job: Job) -> Solved | None:
         return _kept(case, status, job)
 
 
-def _reading(base: Base, settings: Sequence[tuple[str, Any]]) -> contextlib.AbstractContextManager[Any]:
+def reading(base: Base, settings: Sequence[tuple[str, Any]]) -> contextlib.AbstractContextManager[Any]:
     """The lock while a case is created: HDF5, which reads matrix files, is not thread-safe."""
     has_matrix = "matrix" in base.text.lower() or any(str(value).lower() == "matrix" for _, value in settings)
     return writing if has_matrix else contextlib.nullcontext()

@@ -22,6 +22,7 @@ from ..errors import input_error
 from ..scene import Scene
 from . import executors
 from .axes import (
+    Axis,
     Coordinate,
     Dimension,
     as_written,
@@ -129,6 +130,8 @@ class Study:
         #: The text of the study and its file; the file of its table, and whether it saves result files.
         self.input, self.input_file, self.file, self.keeps_results = "", "", "", False
         self._is_checked = False
+        #: The study whose axes have other values here; see `at`.
+        self._origin: Study | None = None
         self._check_names()
         self._check_keys()
         #: Dimension and place of the reference.
@@ -205,8 +208,18 @@ class Study:
     def _datum(self) -> float:
         """The datum of all cases that would have one of their own loads or mesh: the largest of these, so that none is inside the
         contact."""
+        if self._origin is not None:
+            return self._origin._datum
         jobs = (self._job_as_given(number) for number in range(1, len(self) + 1))
         return max(datum for job in jobs for datum in datums_of_case(job.base, job.settings).values())
+
+    def at(self, points: Mapping[str, Sequence[Any]]) -> Study:
+        """The study of other cases: `points` has a list of values for each axis, all of one length. They have the datum of this study
+        and are not checked one by one. Raises InputError."""
+        axes = {one.name: Axis(one.keys, points[one.name], one.factors) for one in self.coordinates if one.keys}
+        study = Study(self.bases, {"row": axes}, error_estimate=self.error_estimate)
+        study._origin, study._is_checked = self, True
+        return study
 
     def check(self) -> None:
         """Check every base, and every value with the first values of the others (only some values of long axes).
