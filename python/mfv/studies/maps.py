@@ -355,6 +355,7 @@ class _Plan:
         solved = np.zeros(life.shape, dtype=np.int8)
         solved[np.ix_(*places)] = 1
         life[np.ix_(*places)] = lives
+        life[table["outcome"].values != "complete"] = np.nan
         dimensions = table["case"].dims
         about = {"long_name": f"life by {parameter} at the largest tension of the lower surface", "units": "cycles"}
         return {
@@ -377,7 +378,7 @@ class _Plan:
         with Case._of_handle(handle) as case:
             case.run()
             cycle = stress_cycle(case.result(), x, 0.0)
-        return comparison.lives(material, cycle, (parameter,))[parameter]
+        return comparison.lives_of(material, cycle, (parameter,))[parameter]
 
     def with_boundaries(self, table: xarray.Dataset, found: Sequence[Crossing]) -> xarray.Dataset:
         """The table with the boundaries along the dimension `crossing`, those of a curve one after another."""
