@@ -344,9 +344,9 @@ class _Plan:
         with one_blas_thread():
             for at in np.ndindex(*lives.shape):
                 place = places[0][at[0]], places[1][at[1]]
-                x = float(table["largest_lower_tension_x"].values[place])
-                if table["outcome"].values[place] == "complete" and math.isfinite(x):
-                    lives[at] = self._life(int(table["case"].values[place]), x, material, parameter)
+                hot_spot = float(table["largest_lower_tension_x"].values[place])
+                if table["outcome"].values[place] == "complete" and math.isfinite(hot_spot):
+                    lives[at] = self._life(int(table["case"].values[place]), hot_spot, material, parameter)
         logarithms = np.log10(np.where(np.isfinite(lives), lives, np.nan))
         # Lives are powers of loads, so logarithms of both are interpolated.
         x, y = (np.log(one) if min(one) > 0.0 else np.asarray(one) for one in self.values)
