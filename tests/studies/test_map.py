@@ -194,7 +194,7 @@ def test_life_at_the_largest_tension(pad):
     ]
     result = scene.run()
     cycle = fatigue.stress_cycle(result, float(result.observables.largest_lower_tension_x), 0.0)
-    expected = comparison.lives(material, cycle)["Smith-Watson-Topper"]
+    expected = comparison.lives_of(material, cycle)["Smith-Watson-Topper"]
     assert float(table["life"].sel(Q=200.0, P=600.0)) == pytest.approx(expected, rel=1e-9)
     assert (table["life_solved"] == 1).all()
 

@@ -307,7 +307,7 @@ def predict(test: PadTest, nodes: int = 101) -> Prediction:
         lives = {
             (parameter, place): value
             for place in PLACES
-            for parameter, value in lives(test, _cycle(result, x, place, test.critical_length)).items()
+            for parameter, value in lives_of(test, _cycle(result, x, place, test.critical_length)).items()
         }
     except ValueError as error:
         raise input_error(f"{about} has no predicted life: {error}") from None
@@ -319,7 +319,7 @@ def _cycle(result: Result, x: float, place: str, length: float) -> StressCycle:
     return stress_cycle(result, x, 0.0) if place == "hot spot" else averaged_cycle(result, x, length, method=place)  # type: ignore[arg-type]
 
 
-def lives(test: PadTest, cycle: StressCycle, parameters: Sequence[str] = PARAMETERS) -> dict[str, float]:
+def lives_of(test: PadTest, cycle: StressCycle, parameters: Sequence[str] = PARAMETERS) -> dict[str, float]:
     """Lives by every parameter, or some, of a cycle at one point, with the material of a test [cycles]."""
     curve = StrainLife(
         *(

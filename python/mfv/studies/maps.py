@@ -344,9 +344,9 @@ class _Plan:
         with one_blas_thread():
             for at in np.ndindex(*lives.shape):
                 place = places[0][at[0]], places[1][at[1]]
-                x = float(table["largest_lower_tension_x"].values[place])
-                if table["outcome"].values[place] == "complete" and math.isfinite(x):
-                    lives[at] = self._life(int(table["case"].values[place]), x, material, parameter)
+                hot_spot = float(table["largest_lower_tension_x"].values[place])
+                if table["outcome"].values[place] == "complete" and math.isfinite(hot_spot):
+                    lives[at] = self._life(int(table["case"].values[place]), hot_spot, material, parameter)
         logarithms = np.log10(np.where(np.isfinite(lives), lives, np.nan))
         # Lives are powers of loads, so logarithms of both are interpolated.
         x, y = (np.log(one) if min(one) > 0.0 else np.asarray(one) for one in self.values)
@@ -355,6 +355,7 @@ class _Plan:
         solved = np.zeros(life.shape, dtype=np.int8)
         solved[np.ix_(*places)] = 1
         life[np.ix_(*places)] = lives
+        life[table["outcome"].values != "complete"] = np.nan
         dimensions = table["case"].dims
         about = {"long_name": f"life by {parameter} at the largest tension of the lower surface", "units": "cycles"}
         return {
@@ -377,7 +378,7 @@ class _Plan:
         with Case._of_handle(handle) as case:
             case.run()
             cycle = stress_cycle(case.result(), x, 0.0)
-        return comparison.lives(material, cycle, (parameter,))[parameter]
+        return comparison.lives_of(material, cycle, (parameter,))[parameter]
 
     def with_boundaries(self, table: xarray.Dataset, found: Sequence[Crossing]) -> xarray.Dataset:
         """The table with the boundaries along the dimension `crossing`, those of a curve one after another."""
