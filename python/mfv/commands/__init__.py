@@ -111,8 +111,8 @@ def _overview() -> str:
     about = f"MFV {__version__}: two-dimensional frictional elastic contact. Help: mfv COMMAND --help"
     lines = ["usage: mfv COMMAND ...", "", about, "", "Commands:"]
     lines += [f"  {module.NAME:10}{module.HELP}" for module in COMMANDS]
-    steps = ("mfv new cylinder.nml", "mfv run cylinder.nml", "mfv plot cylinder.h5")
-    meanings = ("write a commented case", "solve it, write cylinder.h5", "draw cylinder.png")
+    steps = ("mfv new cylinder.nml", "mfv run cylinder.nml")
+    meanings = ("write a commented case", "solve it; mfv plot cylinder.h5 draws the result")
     lines += ["", "First steps:", *(f"  {step:26}{meaning}" for step, meaning in zip(steps, meanings))]
     return "\n".join(lines)
 
