@@ -19,7 +19,9 @@ def solved(table: dict[str, np.ndarray], nodes: int = 201) -> mfv.Result:
     bodies = Body.half_plane(**alloy), Body.disk(RADIUS, elasticity="half_plane", **alloy)
     history = History.from_table(table, period=2, cycles=2)
     output = Output(history="steps", states="last_cycle")
-    return Scene(*bodies, mesh=Mesh(nodes=nodes, refine="edges"), friction=Friction.coulomb(MU), history=history, output=output).run(check=True)
+    return Scene(
+        *bodies, mesh=Mesh(nodes=nodes, refine="edges"), friction=Friction.coulomb(MU), history=history, output=output
+    ).run(check=True)
 
 
 def answer(result: mfv.Result) -> tuple[float, float, float]:
