@@ -1,8 +1,9 @@
-"""A fretting pad in CalculiX on finer and finer meshes, and MFV's sub-model under the loads of each: tractions, stick zone, slip, tension, times.
+"""A fretting pad in CalculiX on finer and finer meshes, and MFV's sub-model under the loads of each: tractions, stick zone, slip, times.
 
 PYTHONPATH=python build/venv/bin/python bench/finite_element_pad.py [--folder build/pad] [--divisions 4 8 16 32]
 
-Writes the rows of the table in docs/from_fe.md. Needs the program ccx (Debian: calculix-ccx). Files of the runs stay in the folder.
+Writes the table in docs/from_fe.md; the last columns compare tractions and stresses with those of MFV under the loads of the first mesh. Needs the
+program ccx (Debian: calculix-ccx). Files of the runs stay in the folder.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "python"))
 os.environ.setdefault("MFV_LIBRARY", str(ROOT / "build/release/lib/libmfv.so"))
 
-from mfv import Body, Friction, Mesh, Output, Scene
+from mfv import Body, Friction, Mesh, Output, Result, Scene, stress
 from mfv.finite_elements import ContactLoads, from_fe
 from mfv.finite_elements.deck import read_deck
 from mfv.finite_elements.readers import read_surface
@@ -45,6 +46,10 @@ INCREMENTS = (4, 10, 20, 20)
 NORMAL_PENALTY, STICK_PENALTY = 1.0e8, 1.0e7
 #: Times of the model between which slip is measured; the second one is the end.
 TURN, END = 3.0, 4.0
+#: Tractions are compared at this distance from the edges and beyond [mm].
+EDGE = 0.03
+#: Stresses beside the contact are compared between these distances from it [mm].
+BESIDE = (0.06, 1.5)
 #: A node sticks below this share of mu p.
 STICKS = 0.98
 
@@ -193,12 +198,12 @@ def of_elements(result: Path) -> Answer:
     pressure, shear = contact.fields["pressure"], contact.fields["shear"]
     turn, end = (int(np.argmin(np.abs(contact.times - time))) for time in (TURN, END))
     moved = slip.fields["shear"][end] - slip.fields["shear"][turn]
-    stress = below.fields["stress_xx"][end]
-    largest = int(np.argmax(stress))
+    along = below.fields["stress_xx"][end]
+    largest = int(np.argmax(along))
     return Answer(
         float(np.abs(shear[end]).max()),
         stick_zone(contact.position[:, 0], pressure[end], shear[end]),
-        float(stress[largest]),
+        float(along[largest]),
         float(below.position[largest, 0]),
         slip_range(pressure[turn], pressure[end], moved),
     )
@@ -218,8 +223,8 @@ def slip_range(before: Array, after: Array, moved: Array) -> float:
     return float(np.abs(moved[both]).max())
 
 
-def of_sub_model(loads: ContactLoads, nodes: int) -> tuple[Answer, float]:
-    """The answer of MFV under loads of the finite elements, and the processor's seconds that it took."""
+def of_sub_model(loads: ContactLoads, nodes: int) -> tuple[Answer, Result, float]:
+    """The answer and result of MFV under loads of the finite elements, and the processor's seconds that it took."""
     alloy = {"youngs_modulus": YOUNG, "poisson_ratio": POISSON}
     bodies = Body.half_plane(**alloy), Body.disk(RADIUS, elasticity="half_plane", **alloy)
     scene = Scene(
@@ -242,7 +247,32 @@ def of_sub_model(loads: ContactLoads, nodes: int) -> tuple[Answer, float]:
         float(result.observables.lower_tension_x),
         slip_range(np.array(turn.pressure), np.array(end.pressure), moved),
     )
-    return answer, seconds
+    return answer, result, seconds
+
+
+def differences(of_mesh: Path, result: Result) -> tuple[float, float]:
+    """Root mean squares of the differences of pressure and shear at the nodes of the finite elements, except the outermost ones at each edge,
+    from those of MFV, over the largest pressure, at the end."""
+    contact = read_surface(of_mesh, "UPPER_SURFACE")
+    end = int(np.argmin(np.abs(contact.times - END)))
+    x, nodes, state = contact.position[:, 0], np.array(result.mesh.x), result.state
+    edge = min(-float(result.summary.contact_left), float(result.summary.contact_right)) - EDGE
+    inside, largest = np.abs(x) < edge, float(np.max(state.pressure))
+    found = []
+    for name in ("pressure", "shear"):
+        off = contact.fields[name][end] - np.interp(x, nodes, np.array(state[name]))
+        found.append(float(np.sqrt(np.mean(off[inside] ** 2))) / largest)
+    return found[0], found[1]
+
+
+def stress_difference(of_mesh: Path, result: Result) -> float:
+    """The largest difference of the stress along the specimen's surface from that of MFV at nodes beside the contact, at the end."""
+    below = read_surface(of_mesh, "LOWER_SURFACE")
+    x, edge = below.position[:, 0], max(-float(result.summary.contact_left), float(result.summary.contact_right))
+    beside = (np.abs(x) > edge + BESIDE[0]) & (np.abs(x) < edge + BESIDE[1])
+    end = int(np.argmin(np.abs(below.times - END)))
+    field = stress.stress(result, x[beside], np.full(int(beside.sum()), -1e-9 * SIZE))
+    return float(np.max(np.abs(below.fields["stress_xx"][end, beside] - field["sigma_xx"])))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -262,18 +292,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
         trimmed(solved(options.folder, options.divisions[0])[0], options.trimmed)
         return 0
     print(
-        "| model | elements or nodes | seconds | P | Q | bulk stress | peak shear | stick zone | tension | at x | slip range, um |"
+        "| model | elements or nodes | seconds | P | Q | bulk stress | peak shear | stick zone | tension | at x | slip range, um | p, q off, % | stress off |"
     )
-    print("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |")
+    first: Result | None = None
     for divisions in options.divisions:
         result, elements, seconds = solved(options.folder, divisions)
         loads = from_fe(result, "UPPER_SURFACE", opposite="LOWER_SURFACE", centre=0.0)
         assert loads.lower_bulk is not None
         bulk = f"{loads.lower_bulk.stress[-1]:.2f} +- {loads.lower_bulk.error[-1]:.2f}"
         carried = f"{loads.P[-1]:.2f} | {loads.Q[-1]:.2f} | {bulk}"
-        print(f"| CalculiX a/{divisions} | {elements} | {seconds:.1f} | {carried} | {shown(of_elements(result))} |")
-        answer, seconds = of_sub_model(loads, options.nodes)
-        print(f"| MFV under its loads | {options.nodes} | {seconds:.2f} | | | | {shown(answer)} |", flush=True)
+        answer, solution, spent = of_sub_model(loads, options.nodes)
+        first = first or solution
+        off = " ".join(f"{100.0 * part:.1f}" for part in differences(result, first))
+        off += f" | {stress_difference(result, first):.1f}"
+        print(f"| CalculiX a/{divisions} | {elements} | {seconds:.1f} | {carried} | {shown(of_elements(result))} | {off} |")
+        print(f"| MFV under its loads | {options.nodes} | {spent:.2f} | | | | {shown(answer)} | | |", flush=True)
     return 0
 
 

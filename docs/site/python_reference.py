@@ -12,7 +12,7 @@ def write_python_reference(package: Path, folder: Path) -> None:
     pages.mkdir()
     paths = [
         path
-        for pattern in ("*.py", "fatigue/*.py", "identify/*.py", "joint/*.py", "studies/*.py")
+        for pattern in ("*.py", "fatigue/*.py", "identify/*.py", "joint/*.py", "studies/*.py", "finite_elements/*.py")
         for path in package.glob(pattern)
         if not path.stem.startswith("_")
     ]

@@ -124,6 +124,32 @@ def test_quadratic_elements() -> None:
         from_fe({name: values[1:] for name, values in quadratic.items()}, quadratic=True)
 
 
+def test_quadratic_elements_of_a_deck(tmp_path: Path) -> None:
+    """Sides of elements with eight nodes, with corners and nodes between them in any order of numbers."""
+    x = nodes_of(0.125)
+    size, half = len(x), len(x) // 2
+    top = {at: at + 1 for at in range(size)}
+    bottom = {at: size + at + 1 for at in range(size)}
+    sides = {at: 2 * size + at + 1 for at in range(0, size, 2)}
+    lines = [
+        "*NODE",
+        *(f"{n}, {x[at]:.17g}, 0." for at, n in top.items()),
+        *(f"{n}, {x[at]:.17g}, -2." for at, n in bottom.items()),
+    ]
+    lines += [*(f"{n}, {x[at]:.17g}, -1." for at, n in sides.items()), "*ELEMENT, TYPE=CPE8R, ELSET=BODY"]
+    for e, at in enumerate(range(0, size - 1, 2), start=1):
+        corners = [bottom[at], bottom[at + 2], top[at + 2], top[at]]
+        lines.append(", ".join(map(str, [e, *corners, bottom[at + 1], sides[at + 2], top[at + 1], sides[at]])))
+    lines += ["*SURFACE, NAME=TOPS", "BODY, S3"]
+    (tmp_path / "job.inp").write_text("\n".join(lines) + "\n")
+    across, along = forces_of(x, stuck, True), -forces_of(x, hertz, True)
+    rows = [f"{top[at]},{across[at]:.17g},{along[at]:.17g}" for at in range(size)]
+    (tmp_path / "job.csv").write_text("node,force_x,force_y\n" + "\n".join(rows[half:] + rows[:half]) + "\n")
+    given = {"x": x, "force_x": across, "force_y": along}
+    same(from_fe(tmp_path / "job.csv", "TOPS", mesh=tmp_path / "job.inp"), from_fe(given, quadratic=True))
+    assert len(read_surface(tmp_path / "job.csv", "TOPS", tmp_path / "job.inp").faces) == half
+
+
 def test_what_cannot_be_told_is_not() -> None:
     """A punch with corners, a node set that ends in the contact, too few nodes."""
     x = np.linspace(-1.0, 1.0, 41)
@@ -632,6 +658,24 @@ def test_files_that_are_wrong(name: str, text: str, message: str, tmp_path: Path
     with pytest.raises((ValueError, OSError), match=message) as caught:
         from_fe(tmp_path / name, "TOP")
     assert name in str(caught.value)
+
+
+def test_damaged_results_of_calculix(tmp_path: Path) -> None:
+    """A file that ends within a block has the times before; other lines are named."""
+    text = (RESULTS / "pad.frd").read_text()
+    for name in ("pad.inp", "pad.dat"):
+        (tmp_path / name).write_text((RESULTS / name).read_text())
+    path = tmp_path / "pad.frd"
+    path.write_text(text[: text.rindex(" -4  CONTACT") + 2000])
+    assert from_fe(path, "UPPER_SURFACE").t.tolist() == [1.0]
+    path.write_text(text.replace(" -1         1-8.0", " -1         1-8x0", 1))
+    with pytest.raises(ValueError, match=r"pad.frd:\d+: not a line of a formatted .frd file: could not convert"):
+        from_fe(path, "UPPER_SURFACE")
+    path.write_text("no result\n")
+    with pytest.raises(ValueError, match=r"pad.frd: has no results of nodes, or is not a .frd file"):
+        from_fe(path, "UPPER_SURFACE")
+    with pytest.raises(FileNotFoundError, match=r"absent.frd: does not exist"):
+        from_fe(tmp_path / "absent.frd", "UPPER_SURFACE")
 
 
 def test_from_fe_is_in_loads() -> None:

@@ -81,50 +81,71 @@ def _arrays(blocks: Sequence[_Block], numbers: Sequence[int]) -> tuple[np.ndarra
         if all(number in block.values for number in numbers):
             for at, name in enumerate(block.components):
                 found.setdefault(name, {})[block.time] = [block.values[number][at] for number in numbers]
-    times = sorted(set.union(set(), *(set(rows) for rows in found.values())))
-    complete = {name: rows for name, rows in found.items() if len(rows) == len(times)}
+    times = sorted(set().union(*(set(rows) for rows in found.values())))
+    if any(list(rows) == times[:-1] for rows in found.values()):  # the last time is not complete
+        times.pop()
+    complete = {name: rows for name, rows in found.items() if set(times) <= set(rows)}
     return np.array(times), {name: np.array([rows[time] for time in times]) for name, rows in complete.items()}
 
 
 def _frd(path: Path) -> _Frd:
     """Nodes, elements and blocks of results. Raises OSError, ValueError."""
-    result = _Frd({}, [], [])
-    part, digits, time, last = "", 10, 0.0, [0.0]
-    for line in _lines(path):
+    reader = _FrdReader()
+    for number, line in enumerate(_lines(path), start=1):
+        try:
+            reader.take(line)
+        except (ValueError, IndexError) as error:
+            raise ValueError(f"{path}:{number}: not a line of a formatted .frd file: {error}") from None
+    if not reader.result.blocks:
+        raise ValueError(f"{path}: has no results of nodes, or is not a .frd file")
+    return reader.result
+
+
+class _FrdReader:
+    """Takes the lines of a .frd file by turns; the first columns say what a line has."""
+
+    def __init__(self) -> None:
+        self.result = _Frd({}, [], [])
+        self.part, self.digits, self.time = "", 10, 0.0
+        self.last = [0.0]
+
+    def take(self, line: str) -> None:
+        """Take a line. Raises ValueError, IndexError."""
         key = line[:3]
         if line[:6].strip() in ("2C", "3C", "100C"):
-            part, digits = line[:6].strip(), _digits(path, line)
-            time = float(line[12:24]) if part == "100C" else time
+            self._begin(line)
         elif key == " -4":
-            result.blocks.append(_Block(time, [], {}))
+            self.result.blocks.append(_Block(self.time, [], {}))
         elif key == " -5" and line[5:13].strip() != "ALL":  # magnitudes are not stored
-            result.blocks[-1].components.append(line[5:13].strip())
-        elif key == " -1" and part == "3C":
-            kind = int(line[3 + digits : 8 + digits])
-            result.elements.append(([], kind in _QUADRATIC))
-        elif key == " -2" and part == "3C":
-            result.elements[-1][0].extend(int(line[at : at + digits]) for at in range(3, len(line), digits))
+            self.result.blocks[-1].components.append(line[5:13].strip())
+        elif key in (" -1", " -2") and self.part == "3C":
+            self._take_element(key, line)
         elif key == " -1":
-            last = _reals(line, digits)
-            (result.nodes if part == "2C" else result.blocks[-1].values)[int(line[3 : 3 + digits])] = last
+            values = self.result.nodes if self.part == "2C" else self.result.blocks[-1].values
+            self.last = values[int(line[3 : 3 + self.digits])] = _reals(line, self.digits)
         elif key == " -2":
-            last += _reals(line, digits)
-    if not result.blocks:
-        raise ValueError(f"{path}: has no results of nodes, or is not a .frd file")
-    return result
+            self.last += _reals(line, self.digits)
+
+    def _begin(self, line: str) -> None:
+        """A heading of nodes, elements or results; its last letter says how many digits numbers of nodes have."""
+        if line[-1] not in "01":
+            raise ValueError("it is binary; write a formatted one")
+        self.part, self.digits = line[:6].strip(), 10 if line[-1] == "1" else 5
+        if self.part == "100C":
+            self.time = float(line[12:24])
+
+    def _take_element(self, key: str, line: str) -> None:
+        if key == " -1":
+            self.result.elements.append(([], int(line[3 + self.digits : 8 + self.digits]) in _QUADRATIC))
+        else:
+            nodes = (int(line[at : at + self.digits]) for at in range(3, len(line), self.digits))
+            self.result.elements[-1][0].extend(nodes)
 
 
 def _lines(path: Path) -> Iterator[str]:
     with path.open(encoding="latin-1", newline="\n") as file:
         for line in file:
             yield line.rstrip()
-
-
-def _digits(path: Path, line: str) -> int:
-    """Digits of the numbers of nodes, by the last letter of a heading. Raises ValueError for a binary file."""
-    if line[-1] not in "01":
-        raise ValueError(f"{path}: is a binary .frd file; write a formatted one")
-    return 10 if line[-1] == "1" else 5
 
 
 def _reals(line: str, digits: int) -> list[float]:

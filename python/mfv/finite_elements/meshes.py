@@ -56,9 +56,7 @@ def read_meshes(paths: Sequence[Path], surface: str | None, columns: Columns | N
 
 
 def _mesh(meshio: Any, path: Path) -> Any:
-    """A mesh. Raises OSError, ValueError."""
-    if not path.is_file():
-        raise FileNotFoundError(f"{path}: does not exist or is not a file")
+    """A mesh. Raises ValueError."""
     try:
         return meshio.read(path)
     except (Exception, SystemExit) as error:  # readers raise exceptions of many types
@@ -66,9 +64,7 @@ def _mesh(meshio: Any, path: Path) -> Any:
 
 
 def _series(meshio: Any, path: Path) -> tuple[Any, list[Mapping[str, Any]], list[float]]:
-    """The mesh, the arrays at the points at all times, and these, of an XDMF file. Raises OSError, ValueError."""
-    if not path.is_file():
-        raise FileNotFoundError(f"{path}: does not exist or is not a file")
+    """The mesh, the arrays at the points at all times, and these, of an XDMF file. Raises ValueError."""
     try:
         with meshio.xdmf.TimeSeriesReader(str(path)) as reader:
             points, cells = reader.read_points_cells()
@@ -121,8 +117,6 @@ def read_pvd(path: Path) -> tuple[list[Path], list[float]]:
 
 def read_exodus(path: Path, surface: str | None, columns: Columns | None) -> Record:
     """Nodal variables at the nodes of a node set, by its name or number, at all times. Raises OSError, ValueError, ModuleNotFoundError."""
-    if not path.is_file():
-        raise FileNotFoundError(f"{path}: does not exist or is not a file")
     try:
         file = needed("netCDF4").Dataset(path)
     except OSError as error:

@@ -42,8 +42,12 @@ def read_surface(
     if not paths:
         raise ValueError("no files given")
     deck, path, suffix = Path(mesh) if mesh is not None else None, paths[0], paths[0].suffix.lower()
+    if suffix == ".odb":
+        raise ValueError(f"{path}: only Abaqus reads an odb; write a field report (.rpt) or a CSV from it")
+    _check_files([*paths, *([] if deck is None else [deck])])
     if suffix == ".pvd":
         paths, times = read_pvd(path)
+        _check_files(paths)
         suffix = ".vtu"
     if suffix in FORMATS["VTU and others by meshio"]:
         return read_meshes(paths, surface, columns, times)
@@ -57,10 +61,15 @@ def read_surface(
         return (read_frd if suffix == ".frd" else read_dat)(path, surface, deck, columns)
     if suffix in FORMATS["Exodus"]:
         return read_exodus(path, surface, columns)
-    if suffix == ".odb":
-        raise ValueError(f"{path}: only Abaqus reads an odb; write a field report (.rpt) or a CSV from it")
     known = ", ".join(each for suffixes in FORMATS.values() for each in suffixes)
     raise ValueError(f"{path}: unknown format '{suffix}'; known are {known}")
+
+
+def _check_files(paths: Sequence[Path]) -> None:
+    """Raises FileNotFoundError for the first that is not a file."""
+    absent = next((path for path in paths if not path.is_file()), None)
+    if absent is not None:
+        raise FileNotFoundError(f"{absent}: does not exist or is not a file")
 
 
 def _arrays(source: Mapping[str, Any], surface: str | None, columns: Columns | None) -> Record:
