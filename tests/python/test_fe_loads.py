@@ -306,16 +306,22 @@ def test_round_trip_through_history(tmp_path: Path) -> None:
     np.testing.assert_allclose(second.summary.tangential_force, -2e-4, rtol=1e-9)
 
 
-def test_edges_of_an_equivalent_cylinder() -> None:
-    """The cylinder whose edges have K_N(t) and K_T(t) is the one of the model if its radius is given."""
+def test_an_edge_by_itself() -> None:
+    """`Body.edge` under K_N(t) and K_T(t) of the model: with its own half-width as edge_length the loads of the model."""
     loads = from_fe(arrays(0.03125, 0.4))
-    modulus = 2.0  # a = p0 = 1: p0 = E* a/(2 R)
-    table = loads.edge_history("right", radius=1.0, contact_modulus=modulus)
-    np.testing.assert_allclose([table["normal_force"][0], table["tangential_force"][0]], [P, Q], rtol=2e-3)
-    with pytest.raises(ValueError, match="side: must be 'left' or 'right', not 'top'"):
-        loads.edge_history("top", radius=1.0, contact_modulus=1.0)
+    modulus = 4.0 * P / np.pi  # of any size: K_N and edge_length determine P
+    upper = mfv.Body.edge(float(loads.right.K_N[0]), 1.0, rigid=True)
+    lower = mfv.Body.half_plane(youngs_modulus=modulus, poisson_ratio=0.0)
+    edge = mfv.Scene(lower, upper, coupling="none", friction=mfv.Friction.coulomb(0.9), steps=loads.steps(edge="right")).run(
+        check=True
+    )
+    np.testing.assert_allclose([edge.summary.normal_force, edge.summary.tangential_force], [P, Q], rtol=2e-3)
+    mirrored = loads.table(edge="left")
+    np.testing.assert_allclose(mirrored["shear_intensity"], -loads.left.K_T)
+    with pytest.raises(ValueError, match="edge: must be 'left' or 'right', not 'top'"):
+        loads.history(edge="top")
     with pytest.raises(ValueError, match="K_N or K_T of the left edge is unknown at time 0"):
-        from_fe(arrays(0.9)).edge_history("left", radius=1.0, contact_modulus=1.0)
+        from_fe(arrays(0.9)).table(edge="left")
 
 
 # --- formats ---

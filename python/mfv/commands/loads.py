@@ -52,6 +52,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_output(parser, "FILE.txt", "table to write (default: RESULT_loads.txt)")
     parser.add_argument("--edges", type=Path, metavar="FILE.csv", help="write edges, K_N and K_T with their errors, too")
     parser.add_argument("--moment", action="store_true", help="write the moment, too, for bodies that could tilt")
+    parser.add_argument(
+        "--edge", choices=("left", "right"), help="write K_N and K_T of that edge in place of the forces, for shape='edge'"
+    )
     parser.add_argument("--body", choices=("lower", "upper"), help="body of the surface (default: by the mesh, else by the forces)")
     parser.add_argument("--angle", type=number, default=0.0, metavar="DEGREES", help="of the x axis of the contact in the model")
     parser.add_argument("--centre", type=number, metavar="X", help="x = 0 of the scene (default: middle of the largest contact)")
@@ -94,11 +97,12 @@ def run(options: argparse.Namespace) -> None:
     )
     for note in loads.notes:
         print(f"mfv: {first}: {note}", file=sys.stderr)
-    loads.write(path, moment=options.moment)
+    loads.write(path, moment=options.moment, edge=options.edge)
     if edges is not None:
         loads.write_edges(edges)
     _print(loads)
-    print(f"{path}: {len(loads.table()['time'])} turning points of {', '.join(list(loads.table(moment=options.moment))[1:])}")
+    names = list(loads.table(moment=options.moment, edge=options.edge))[1:]
+    print(f"{path}: {len(loads.table()['time'])} turning points of {', '.join(names)}")
     print(f"&history file='{path}' /")
 
 

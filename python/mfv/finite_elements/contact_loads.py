@@ -6,11 +6,11 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from .._files import written
-from ..loads import Targets
 from ..scene import History, Step
 from .bulk import Bulk, bulk_stress
 from .edge_fits import Edge, contact_nodes, edge
@@ -50,10 +50,16 @@ class ContactLoads:
         """The times from the first contact on, which a history has."""
         return slice(int(np.argmax(self.P > 0.0)), None)
 
-    def table(self, *, moment: bool = False) -> dict[str, Array]:
-        """The columns of `&history` and time, from the first contact on. `moment`: for bodies that could tilt, such as punches."""
+    def table(self, *, moment: bool = False, edge: str | None = None) -> dict[str, Array]:
+        """The columns of `&history` and time, from the first contact on. `moment`: for bodies that could tilt, such as punches.
+
+        `edge`: 'left' or 'right', for that edge by itself (`Body.edge`) K_N and K_T in place of the forces; the left edge becomes the right
+        one of the mirror image. Raises ValueError if they are unknown at a time.
+        """
         columns = {"time": self.t, "normal_force": self.P, "tangential_force": self.Q}
-        if moment:
+        if edge is not None:
+            columns = {"time": self.t, **self._intensities(edge)}
+        elif moment:
             columns["moment"] = self.M
         for name, bulk in (("lower_bulk_stress", self.lower_bulk), ("upper_bulk_stress", self.upper_bulk)):
             if bulk is not None:
@@ -71,50 +77,49 @@ class ContactLoads:
         return columns
 
     def history(
-        self, *, moment: bool = False, period: int | None = None, cycles: int | None = None, steady_tolerance: float | None = None
+        self,
+        *,
+        moment: bool = False,
+        edge: str | None = None,
+        period: int | None = None,
+        cycles: int | None = None,
+        steady_tolerance: float | None = None,
     ) -> History:
-        """The loads as a `History` of a scene. Raises ValueError if there is no contact."""
+        """The loads as a `History` of a scene; `moment`, `edge`: as in `table`. Raises ValueError if there is no contact, and as `table`."""
         self._check_contact()
-        return History.from_table(self.table(moment=moment), period=period, cycles=cycles, steady_tolerance=steady_tolerance)
+        return History.from_table(
+            self.table(moment=moment, edge=edge), period=period, cycles=cycles, steady_tolerance=steady_tolerance
+        )
 
-    def steps(self, *, moment: bool = False) -> list[Step]:
-        """A `Step` for every time, with friction. Raises ValueError if there is no contact."""
+    def steps(self, *, moment: bool = False, edge: str | None = None) -> list[Step]:
+        """A `Step` for every time, with friction; otherwise as `history`."""
         self._check_contact()
-        columns = {name: values for name, values in self.table(moment=moment).items() if name != "time"}
-        targets: list[Targets] = [{name: float(value) for name, value in zip(columns, row)} for row in zip(*columns.values())]  # type: ignore[misc]
+        columns = {name: values for name, values in self.table(moment=moment, edge=edge).items() if name != "time"}
+        targets: list[Any] = [{name: float(value) for name, value in zip(columns, row)} for row in zip(*columns.values())]
         return [Step(**target) for target in targets]
 
-    def write(self, path: str | os.PathLike[str], *, moment: bool = False) -> None:
-        """Write the table as a text that `&history file='...'` reads. Raises OSError, ValueError if there is no contact."""
+    def write(self, path: str | os.PathLike[str], *, moment: bool = False, edge: str | None = None) -> None:
+        """Write the table as a text that `&history file='...'` reads. Raises OSError; otherwise as `history`."""
         self._check_contact()
         _write(
             Path(path),
             f"# {self.source}: loads per unit thickness, x = 0 at {self.centre:.9g} along the surface",
-            self.table(moment=moment),
+            self.table(moment=moment, edge=edge),
         )
 
     def write_edges(self, path: str | os.PathLike[str]) -> None:
         """Write the edges with K_N, K_T and their errors as a text with a comma between columns. Raises OSError."""
         _write(Path(path), f"# {self.source}: edges; x from {self.centre:.9g} along the surface", self.edges())
 
-    def edge_history(self, side: str, *, radius: float, contact_modulus: float) -> dict[str, Array]:
-        """The loads of a cylinder on a half-plane whose edge has K_N(t) and K_T(t): time, normal_force, tangential_force.
-
-        For edges of any contact: near them the tractions are those of this one, as long as the slip zone is short against the half-width
-        a = 2 (R K_N/E*)^2. `side`: left or right. `radius`: R of the cylinder [length], free. `contact_modulus`: E* = 2m
-        [force/length^2], 1/E* the sum of (1 - nu^2)/E. P = pi E* a^2/(4R), Q = pi sqrt(2a) K_T (Hertz, Mindlin). Raises ValueError if K_N or
-        K_T is unknown at a time.
-        """
+    def _intensities(self, side: str) -> dict[str, Array]:
+        """K_N and K_T of an edge, as that on the right."""
         if side not in ("left", "right"):
-            raise ValueError(f"side: must be 'left' or 'right', not {side!r}")
+            raise ValueError(f"edge: must be 'left' or 'right', not {side!r}")
         at = self.left if side == "left" else self.right
-        K_N, K_T = at.K_N[self.loaded], at.K_T[self.loaded]
-        unknown = np.nonzero(~np.isfinite(K_N + K_T))[0]
+        unknown = np.nonzero(~np.isfinite(at.K_N + at.K_T)[self.loaded])[0]
         if len(unknown):
             raise ValueError(f"{self.source}: K_N or K_T of the {side} edge is unknown at time {self.t[self.loaded][unknown[0]]:g}")
-        half = 2.0 * (radius * K_N / contact_modulus) ** 2
-        force = 0.25 * np.pi * contact_modulus * half**2 / radius
-        return {"time": self.t[self.loaded], "normal_force": force, "tangential_force": np.pi * np.sqrt(2.0 * half) * K_T}
+        return {"normal_intensity": at.K_N, "shear_intensity": at.K_T if side == "right" else -at.K_T}
 
     def _check_contact(self) -> None:
         if not np.any(self.P > 0.0):
