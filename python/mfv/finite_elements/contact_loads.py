@@ -286,7 +286,7 @@ def _notes(
         )
     elif not np.isfinite(left.K_N[fullest] + right.K_N[fullest]):
         notes.append(
-            f"K_N and K_T need an incomplete edge and at least 5 nodes in contact; here are {len(loaded)} where P is largest"
+            f"K_N and K_T are not resolved by the {len(loaded)} nodes in contact where P is largest, or the tractions scatter"
         )
     if len(loaded) and not np.all(np.diff(loaded) == 1):
         notes.append("the contact has gaps between nodes: edges are the outermost ones")
