@@ -1,0 +1,146 @@
+"""The largest tension over a cycle, and its error bar, on random scenes with known tractions (partial_slip.py)."""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import pytest
+from partial_slip import Contact, Unsolved, hertz_pressure, pad_pressure
+
+import mfv
+
+YOUNG, POISSON, RADIUS = 72100.0, 0.33, 10.0
+MODULUS = YOUNG / (1.0 - POISSON**2)
+PHASES = ("shear", "in phase", "out of phase", "any", "gross slip")
+MESHES = ("default", "equal", "refined")
+
+
+@dataclass
+class TensionScene:
+    """A contact of the half-width `half` under a parabola, or, with `flat` above 0, under a pad with a face of flat*half."""
+
+    half: float
+    flat: float
+    mu: float
+    alike: bool
+    phase: str
+    mesh: str
+    nodes: int
+    margin: float
+    #: Tangential forces over P and bulk stresses over P/a, of the turning points, after the press; how often they are repeated.
+    forces: list[float] = field(default_factory=list)
+    bulk: list[float] = field(default_factory=list)
+    cycles: int = 1
+
+    @property
+    def modulus(self) -> float:
+        """E* of the pair."""
+        return 0.5 * MODULUS if self.alike else MODULUS
+
+    @property
+    def normal(self) -> float:
+        """The force that makes the contact as wide as it is (Hertz; Ciavarella, Hills and Monno 1998)."""
+        factor = math.pi
+        if self.flat > 0.0:
+            psi = math.acos(self.flat)
+            factor = 2.0 * psi - math.sin(2.0 * psi)
+        return self.modulus * self.half**2 / (4.0 * RADIUS) * factor
+
+    @property
+    def stress(self) -> float:
+        """The unit of stress, P/a."""
+        return self.normal / self.half
+
+    def contact(self) -> Contact:
+        if self.flat > 0.0:
+            return Contact(lambda x: pad_pressure(x, self.flat), self.mu, (-self.flat, self.flat))
+        return Contact(hertz_pressure, self.mu)
+
+    def exact(self) -> tuple[float, float, int]:
+        """The largest tension of the lower body over the last cycle at its turning points, its place and turning point (from 1)."""
+        contact, found = self.contact(), []
+        for cycle in range(self.cycles):
+            for force, bulk in zip(self.forces, self.bulk):
+                # Bulk stress strains the lower body by sigma/(2 m) of that body.
+                contact.load(force, bulk * (0.25 if self.alike else 0.5))
+                if cycle == self.cycles - 1:
+                    found.append(contact.largest_tension(bulk))
+        row = int(np.argmax([round(value, 9) for value, _ in found]))
+        return found[row][0] * self.stress, found[row][1] * self.half, row + 1
+
+    def text(self, bars: bool = True) -> str:
+        upper = f"shape='disk', radius={RADIUS}"
+        if self.flat > 0.0:
+            upper = f"shape='rounded_punch', half_width={self.flat * self.half:.15g}, edge_radius={RADIUS}"
+        upper += f", youngs_modulus={YOUNG}, poisson_ratio={POISSON}" if self.alike else ", rigid=.true."
+        if self.alike and self.flat == 0.0:
+            upper += ", elasticity='half_plane'"
+        mesh = ["gap='parabolic'"] if self.flat == 0.0 else []
+        if self.mesh != "default":
+            mesh += [f"nodes={self.nodes}", f"half_width={self.margin * self.half:.15g}"]
+        if self.mesh == "refined":
+            mesh += ["refine='edges'"]
+        rows = [
+            ", ".join(f"{value:.15g}" for value in values)
+            for values in (np.array(self.forces) * self.normal, np.array(self.bulk) * self.stress)
+        ]
+        loads = f"&history tangential_force={rows[0]}, lower_bulk_stress={rows[1]}, cycles={self.cycles} /"
+        if self.phase == "gross slip":
+            loads = f"&step shift={math.copysign(self.half, self.forces[0])} /\n&step tangential_force={self.forces[1] * self.normal:.15g} /"
+        return f"""&scene coupling='none' /
+&body shape='half_plane', youngs_modulus={YOUNG}, poisson_ratio={POISSON} /
+&body {upper} /
+&mesh {", ".join(mesh)} /
+&friction law='coulomb', mu={self.mu:.15g} /
+&output error_estimate={".true." if bars else ".false."}, states='none' /
+&step normal_force={self.normal:.15g}, friction=.false. /
+{loads}
+"""
+
+
+def random_scene(seed: int, mesh: str | None = None) -> TensionScene:
+    """A scene whose tractions are known; seeds whose edges move outwards are replaced."""
+    for attempt in range(1000):
+        random = np.random.default_rng([seed, attempt])
+        mu = random.uniform(0.1, 0.9)
+        flat = 0.0 if random.random() < 0.5 else random.choice([random.uniform(0.1, 0.9), random.uniform(0.9, 0.98)])
+        phase = PHASES[random.choice(len(PHASES), p=[0.25, 0.25, 0.25, 0.15, 0.1])]
+        scene = TensionScene(
+            half=random.uniform(0.1, 0.4),
+            flat=float(flat),
+            mu=mu,
+            alike=bool(random.random() < 0.5),
+            phase=phase,
+            mesh=mesh or MESHES[random.choice(3, p=[0.3, 0.4, 0.3])],
+            nodes=int(random.choice([101, 151, 201, 301, 401, 801])),
+            margin=random.uniform(1.1, 1.5),
+            cycles=int(random.integers(1, 4)),
+        )
+        if mesh == "refined" or scene.mesh == "refined":
+            scene.nodes = int(random.choice([100, 150, 200, 300]))
+        largest, least = (mu * random.uniform(0.05, 0.97) for _ in range(2))
+        peak = 2.0 * mu * (2.0 / math.pi) * random.uniform(-1.0, 1.5)
+        if phase == "shear":
+            scene.forces, scene.bulk = [largest, float(random.choice([-largest, -least, 0.0, 0.5 * largest]))], [0.0, 0.0]
+        elif phase == "in phase":
+            ratio = float(random.choice([-1.0, 0.0, random.uniform(-1.0, 0.8)]))
+            peak *= 0.7 * largest / mu
+            scene.forces, scene.bulk = [largest, ratio * largest], [peak, ratio * peak]
+        elif phase == "out of phase":
+            scene.forces, scene.bulk = [largest, largest, -least, -least], [0.0, peak, peak, 0.0]
+        elif phase == "any":
+            rows = int(random.integers(3, 7))
+            scene.forces = list(mu * random.uniform(-0.95, 0.95, rows))
+            scene.bulk = list(2.0 * mu * (2.0 / math.pi) * random.uniform(-0.5, 1.0, rows))
+        else:
+            scene.forces, scene.bulk, scene.cycles = [mu, mu * random.uniform(-0.95, 0.9)], [0.0, 0.0], 1
+        try:
+            scene.exact()
+        except Unsolved:
+            continue
+        return scene
+    raise AssertionError(seed)
