@@ -32,9 +32,11 @@ Array = np.ndarray
 Function = Callable[[Array], Array]
 
 #: Points of a panel between two edges, in the angle that removes roots at both of its ends.
-DEGREE = 48
+DEGREE = 36
 #: Gauss points of each part of a panel, and halvings of its parts towards its ends.
-GAUSS, HALVINGS = 10, 10
+GAUSS, HALVINGS = 8, 9
+#: Part of a load segment that is left out, and the friction over mu P/a that may remain where a loop closes.
+CLOSING, CLOSED = 1e-7, 1e-4
 
 
 class Unsolved(Exception):
@@ -193,7 +195,9 @@ class Contact:
     def _slip(self, change: Array, parts: int) -> None:
         start, signs = self._start(change)
         scale = np.max(np.abs(change) * [1.0, math.pi])
+        # Where a loop closes the edges jump to its start: just before that.
         fractions = np.concatenate([[0.002, 0.01, 0.04], np.linspace(0.0, 1.0, parts + 1)[1:]])
+        fractions[-1] -= CLOSING
         widths = np.full(2, 0.25 * fractions[0] * min(scale / self.mu, 1.0))
         before, last = 0.0, np.zeros(2)
         edges = np.array(start)
@@ -220,7 +224,6 @@ class Contact:
             if widths.sum() > 0.98 * room:
                 widths = found + growth * max(0.98 * room - found.sum(), 0.0) / max(growth.sum(), 1e-300) * 0.5
             edges = np.array([start[0] + found[0], start[1] - found[1]])
-        # A closed loop ends at its former edges.
         for i in range(2):
             nearest = self.shear.ends[np.argmin(np.abs(self.shear.ends - edges[i]))]
             edges[i] = nearest if abs(nearest - edges[i]) < 2e-5 else edges[i]
@@ -238,7 +241,18 @@ class Contact:
         x = self.shear.points().ravel()
         if np.max(np.abs(self.shear.values.ravel()) - self.mu * self.pressure(x)) > 1e-6 * self.mu:
             raise Unsolved("more than the friction limit")
-        self.edges, self.signs = list(edges), signs
+        self.edges, self.signs = self._beyond_closed_loops(edges, signs), signs
+
+    def _beyond_closed_loops(self, edges: Array, signs: list[float]) -> list[float]:
+        """The edges of the stick zone, beyond former slip zones in which the limit is reached again."""
+        lack = 1.0 - np.array(signs)[:, None, None] * self.shear.values / (self.mu * self.pressure(self.shear.points()))
+        closed = np.all(np.abs(lack) < CLOSED, axis=2)
+        left, right = (int(np.argmin(np.abs(self.shear.ends - edge))) for edge in edges)
+        while left < right and closed[0, left]:
+            left += 1
+        while right > left and closed[1, right - 1]:
+            right -= 1
+        return [float(self.shear.ends[left]), float(self.shear.ends[right])]
 
     # --- stresses ---
 
