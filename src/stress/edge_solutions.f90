@@ -31,6 +31,7 @@ module mfv_edge_solutions
    contains
       procedure :: edge_beyond
       procedure :: over_exact
+      procedure :: intervals => solved_intervals
    end type graded_solution_type
 
 contains
@@ -259,6 +260,13 @@ contains
       end associate
    end subroutine edge_beyond
 
+   !> Number of the outermost intervals that are far enough from the end of the solution.
+   pure integer function solved_intervals(self) result(number)
+      class(graded_solution_type), intent(in) :: self
+
+      number = max((size(self%ends) - 1)/2, 1)
+   end function solved_intervals
+
    !> Discrete tractions over the means of the exact ones for an edge `distance` beyond the outer end of the outermost interval,
    !> length, which it may cut; 1 for intervals farther inwards, where the end of the solution is near.
    pure function over_exact(self, distance, intervals) result(ratio)
@@ -269,7 +277,7 @@ contains
       integer :: n
 
       ratio = 1.0_wp
-      n = min(intervals, max(size(exact)/2, 1))
+      n = min(intervals, self%intervals())
       exact = power_means(max(self%ends + distance/self%unit, 0.0_wp), self%power)
       exact(1) = exact(1)*max(self%ends(1) + min(distance/self%unit, 0.0_wp), 0.0_wp)/self%ends(1)
       ratio(:n) = (self%discrete(:n, 2) + self%power*distance/self%unit*self%discrete(:n, 1))/max(exact(:n), tiny(1.0_wp))

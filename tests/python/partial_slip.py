@@ -128,6 +128,31 @@ def between(ends: Array, left: float, right: float) -> Array:
     return np.array([left, *inner, right])
 
 
+def sampled(function: Panels, left: float, right: float) -> tuple[Array, Array, Array]:
+    """Places, weights and values of a function from `left` to `right`, one of which is an end of a panel."""
+    if right - left < 1e-12:
+        return np.zeros(0), np.zeros(0), np.zeros(0)
+    ends = between(function.ends, left, right)
+    x, weight = quadrature(ends)
+    whole = np.searchsorted(function.ends, ends[:-1] + 1e-11) - 1
+    values = (function.values @ SAMPLING)[whole]
+    for i, panel in enumerate(whole):
+        if (ends[i] > function.ends[panel]) or (ends[i + 1] < function.ends[panel + 1]):
+            values[i] = function(x.reshape(values.shape)[i])
+    return x, weight, values.ravel()
+
+
+def _sampling() -> Array:
+    """From the values of a panel to those at the angles of the rule."""
+    order = np.arange(DEGREE)
+    series = 2.0 / DEGREE * np.cos(np.outer(math.pi * (order + 0.5) / DEGREE, order))
+    series[:, 0] *= 0.5
+    return series @ np.cos(np.outer(order, np.arccos(1.0 - 2.0 * ANGLE / math.pi)))
+
+
+SAMPLING = _sampling()
+
+
 # --- tractions ---------------------------------------------------------------------------------------------------------------------
 
 
@@ -147,7 +172,7 @@ class Contact:
         self.edges = [-1.0, 1.0]
         self.signs = [0.0, 0.0]
 
-    def load(self, force: float, strain: float, parts: int = 8) -> None:
+    def load(self, force: float, strain: float, parts: int = 4) -> None:
         """Change the tangential force, over P, and the strain m (epsilon_1 - epsilon_2), over P/a, in proportion."""
         change = np.array([force - self.force, strain - self.strain])
         if not np.any(np.abs(change) > 1e-13):
@@ -183,12 +208,12 @@ class Contact:
     def _needed(self, edges: Array, signs: list[float]) -> tuple[Array, Array, Array, Array]:
         """The change of force and strain that moves the edges inwards to these; places, changes of tau times weights over R, sgn."""
         c, d = edges
-        left, left_weight = quadrature(between(self.shear.ends, -1.0, c))
-        right, right_weight = quadrature(between(self.shear.ends, d, 1.0))
+        left, left_weight, left_shear = sampled(self.shear, -1.0, c)
+        right, right_weight, right_shear = sampled(self.shear, d, 1.0)
         t = np.concatenate([left, right])
         side = np.repeat([-1.0, 1.0], [left.size, right.size])
         sign = np.repeat(signs, [left.size, right.size])
-        change = sign * self.mu * self.pressure(t) - self.shear(t)
+        change = sign * self.mu * self.pressure(t) - np.concatenate([left_shear, right_shear])
         change = change * np.concatenate([left_weight, right_weight]) / np.sqrt(np.maximum(np.abs((t - c) * (t - d)), 1e-300))
         return np.array([np.sum(change * np.abs(t - 0.5 * (c + d))), -np.sum(change * side) / math.pi]), t, change, side
 
@@ -196,7 +221,7 @@ class Contact:
         start, signs = self._start(change)
         scale = np.max(np.abs(change) * [1.0, math.pi])
         # Where a loop closes the edges jump to its start: just before that.
-        fractions = np.concatenate([[0.002, 0.01, 0.04], np.linspace(0.0, 1.0, parts + 1)[1:]])
+        fractions = np.concatenate([[0.01, 0.1], np.linspace(0.0, 1.0, parts + 1)[1:]])
         fractions[-1] -= CLOSING
         widths = np.full(2, 0.25 * fractions[0] * min(scale / self.mu, 1.0))
         before, last = 0.0, np.zeros(2)
@@ -258,14 +283,13 @@ class Contact:
 
     def shear_stress_integral(self, x: float) -> float:
         """2/pi p.v. integral of tau/(t - x) dt: sigma_xx along the lower surface by the shear."""
-        ends = self.shear.ends
         if not -1.0 < x < 1.0:
-            t, weight = quadrature(ends)
-            return 2.0 / math.pi * float(np.sum(weight * self.shear(t) / (t - x)))
-        t, weight = quadrature(np.array([*between(ends, -1.0, x), *between(ends, x, 1.0)[1:]]))
+            t, weight, shear = sampled(self.shear, -1.0, 1.0)
+            return 2.0 / math.pi * float(np.sum(weight * shear / (t - x)))
+        t, weight, shear = (np.concatenate(both) for both in zip(sampled(self.shear, -1.0, x), sampled(self.shear, x, 1.0)))
         here = float(self.shear(np.array([x]))[0])
         apart = np.where(t == x, 1.0, t - x)
-        return 2.0 / math.pi * float(np.sum(weight * (self.shear(t) - here) / apart) + here * math.log((1.0 - x) / (1.0 + x)))
+        return 2.0 / math.pi * float(np.sum(weight * (shear - here) / apart) + here * math.log((1.0 - x) / (1.0 + x)))
 
     def surface_stress(self, x: float, bulk: float = 0.0, upper: bool = False) -> float:
         """sigma_xx along a surface, over P/a."""

@@ -61,17 +61,15 @@ class TensionScene:
             return Contact(lambda x: pad_pressure(x, self.flat), self.mu, (-self.flat, self.flat))
         return Contact(hertz_pressure, self.mu)
 
-    def exact(self) -> tuple[float, float, int]:
-        """The largest tension of the lower body over the last cycle at its turning points, its place and turning point (from 1)."""
+    def tensions(self) -> list[tuple[float, float]]:
+        """The largest tensions of the lower body at all turning points of all cycles, and their places."""
         contact, found = self.contact(), []
-        for cycle in range(self.cycles):
-            for force, bulk in zip(self.forces, self.bulk):
-                # Bulk stress strains the lower body by sigma/(2 m) of that body.
-                contact.load(force, bulk * (0.25 if self.alike else 0.5))
-                if cycle == self.cycles - 1:
-                    found.append(contact.largest_tension(bulk))
-        row = int(np.argmax([round(value, 9) for value, _ in found]))
-        return found[row][0] * self.stress, found[row][1] * self.half, row + 1
+        for force, bulk in zip(self.forces * self.cycles, self.bulk * self.cycles):
+            # Bulk stress strains the lower body by sigma/(2 m) of that body.
+            contact.load(force, bulk * (0.25 if self.alike else 0.5))
+            value, place = contact.largest_tension(bulk)
+            found.append((value * self.stress, place * self.half))
+        return found
 
     def text(self, bars: bool = True) -> str:
         upper = f"shape='disk', radius={RADIUS}"
@@ -97,14 +95,14 @@ class TensionScene:
 &body {upper} /
 &mesh {", ".join(mesh)} /
 &friction law='coulomb', mu={self.mu:.15g} /
-&output error_estimate={".true." if bars else ".false."}, states='none' /
+&output error_estimate={".true." if bars else ".false."}, states='none', history='steps', stress_at={-self.half:.15g} /
 &step normal_force={self.normal:.15g}, friction=.false. /
 {loads}
 """
 
 
-def random_scene(seed: int, mesh: str | None = None) -> TensionScene:
-    """A scene whose tractions are known; loads under which edges move outwards are replaced."""
+def random_scene(seed: int, mesh: str | None = None) -> tuple[TensionScene, list[tuple[float, float]]]:
+    """A scene and its tensions; loads under which edges move outwards, so that these are not known, are replaced."""
     random = np.random.default_rng(seed)
     scene = TensionScene(
         half=random.uniform(0.1, 0.4),
@@ -119,10 +117,9 @@ def random_scene(seed: int, mesh: str | None = None) -> TensionScene:
     for _ in range(1000):
         _draw_loads(scene, random)
         try:
-            scene.exact()
+            return scene, scene.tensions()
         except Unsolved:
             continue
-        return scene
     raise AssertionError(seed)
 
 
