@@ -259,7 +259,9 @@ class Contact:
             inside = (x > c) & (x < d)
             values = self.mu * self.pressure(x) * np.where(x < c, signs[0], signs[1])
             at = x[inside]
-            values[inside] = former(at) + np.sqrt((at - c) * (d - at)) / math.pi * ((weights * side) / (t - at[:, None])).sum(axis=1)
+            values[inside] = former(at) + np.sqrt((at - c) * (d - at)) / math.pi * ((weights * side) / (t - at[:, None])).sum(
+                axis=1
+            )
             return values
 
         self.shear = Panels(np.unique(np.concatenate([former.ends, edges]))).filled(shear)
@@ -298,7 +300,9 @@ class Contact:
 
     def largest_tension(self, bulk: float = 0.0, upper: bool = False) -> tuple[float, float]:
         """The largest sigma_xx along a surface, at least the bulk stress, and its place: at edges, former ones too, or between them."""
-        inner = np.concatenate([self.shear.ends[:-1] + np.diff(self.shear.ends) * part for part in (0.05, 0.2, 0.4, 0.6, 0.8, 0.95)])
+        inner = np.concatenate(
+            [self.shear.ends[:-1] + np.diff(self.shear.ends) * part for part in (0.05, 0.2, 0.4, 0.6, 0.8, 0.95)]
+        )
         places = np.unique(np.concatenate([self.shear.ends, inner, [-3.0, -1.3, -1.05, 1.05, 1.3, 3.0]]))
         stress = np.array([self.surface_stress(x, bulk, upper) for x in places])
         best, where = float(stress.max()), float(places[stress.argmax()])

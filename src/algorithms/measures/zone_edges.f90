@@ -523,7 +523,7 @@ contains
       !> slip disagrees with the traction, it locates the edge.
       subroutine correct_by_slip(edge, error)
          real(wp), intent(inout) :: edge, error
-         !> In intervals; unequal ones have mean slips.
+         !> In intervals, the wider one at the edge; unequal ones have mean slips.
          real(wp), parameter :: agreement(2) = [0.35_wp, 1.0_wp], straight = 0.3_wp
          integer :: node, i
          real(wp) :: by_slip, values(0:2)
@@ -536,7 +536,7 @@ contains
          end do
          if (abs(values(2) - 2.0_wp*values(1) + values(0)) > straight*(values(1) - values(0))) return
          by_slip = edge_by_slip(model, state, next, side, edge)
-         if (abs(by_slip - edge) <= agreement(merge(2, 1, samples%is_integral))*model%width(last)) then
+         if (abs(by_slip - edge) <= agreement(merge(2, 1, samples%is_integral))*maxval(model%width([last, next]))) then
             ! An older edge in the same interval is not seen in the tractions.
             if (has_older_edges(model)) error = max(error, abs(by_slip - edge))
             return
