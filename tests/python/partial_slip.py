@@ -303,11 +303,13 @@ class Contact:
         inner = np.concatenate(
             [self.shear.ends[:-1] + np.diff(self.shear.ends) * part for part in (0.05, 0.2, 0.4, 0.6, 0.8, 0.95)]
         )
-        places = np.unique(np.concatenate([self.shear.ends, inner, [-3.0, -1.3, -1.05, 1.05, 1.3, 3.0]]))
+        beside = 1.0 + np.geomspace(1e-4, 10.0, 16)
+        places = np.unique(np.concatenate([self.shear.ends, inner, beside, -beside]))
         stress = np.array([self.surface_stress(x, bulk, upper) for x in places])
         best, where = float(stress.max()), float(places[stress.argmax()])
         for i in range(1, len(places) - 1):
-            if stress[i] < stress[i - 1 : i + 2].max() or stress[i] < 0.9 * best:
+            # At an edge, where it has a cusp, it is exact.
+            if stress[i] < stress[i - 1 : i + 2].max() or stress[i] < 0.9 * best or abs(places[i]) == 1.0:
                 continue
             value, place = _golden(lambda x: self.surface_stress(x, bulk, upper), places[i - 1], places[i + 1])
             if value > best:

@@ -38,8 +38,8 @@ module mfv_discretisation_error
    !> Factor on the bars of unequal intervals, whose coarser meshes differ less from them than their errors do: measured
    !> (docs/verification.md).
    real(wp), parameter :: of_unequal_intervals = 2.0_wp
-   !> Factor on the bars of tensions, whose errors depend on where between the nodes the edges lie, here and on the coarser meshes:
-   !> measured on scenes with known tractions (docs/verification.md).
+   !> Factor on the bars of tensions on equal intervals, whose errors depend on where between the nodes the edges lie, here and on the
+   !> coarser meshes: measured on scenes with known tractions (docs/verification.md).
    real(wp), parameter :: of_tensions = 1.5_wp
 
 contains
@@ -88,10 +88,11 @@ contains
                                                                     simulation%contact%state%fields%pressure, values(place, 1)))
                if (observables(place)%name == 'largest_slip_range') &
                   call narrow_slip_range(nodes, values, allowances, estimate%bar(place))
-               if (index(observables(place)%name, '_tension') > 0 .and. observables(place)%error == error_local) &
-                  estimate%bar(place)%error = of_tensions*estimate%bar(place)%error
-               if (allocated(simulation%contact%model%scene%mesh%ends)) &
+               if (allocated(simulation%contact%model%scene%mesh%ends)) then
                   estimate%bar(place)%error = of_unequal_intervals*estimate%bar(place)%error
+               else if (observables(place)%error == error_local .and. index(observables(place)%name, '_tension') > 0) then
+                  estimate%bar(place)%error = of_tensions*estimate%bar(place)%error
+               end if
             end if
             if (peak_is_at_corner(simulation, place, values(:, 1))) estimate%bar(place) = logarithmic_bar(values(place, :))
          end do
