@@ -3,7 +3,7 @@ sheared (Cattaneo and Mindlin), by scikit-fem and by MFV, against sigma_xx = 2 m
 
     pip install scikit-fem; python tests/finite_elements/trailing_edge.py [FRACTION]
 
-FRACTION: Q/(mu P), 0.5 by default. A quarter of an hour on one processor.
+FRACTION: Q/(mu P), 0.5 by default. Two minutes on one processor.
 
 Finite elements
 ---------------
@@ -274,8 +274,8 @@ def main() -> None:
     fraction = float(sys.argv[1]) if len(sys.argv) > 1 else 0.5
     print(f"Q/(mu P) = {fraction}; elements or nodes along the contact, worst relative error of four grids, seconds for one")
     for quadratic in (False, True):
-        for elements in (10, 20, 40, 80, 160, 320):
-            if quadratic and elements > 80:
+        for elements in (10, 20, 40, 80, 160):
+            if quadratic and elements > 40:
                 continue
             found = np.array([finite_elements(elements, quadratic, shift, fraction) for shift in SHIFTS])
             worst = np.abs(found[:, :3]).max(axis=0)

@@ -134,7 +134,7 @@ def sampled(function: Panels, left: float, right: float) -> tuple[Array, Array, 
         return np.zeros(0), np.zeros(0), np.zeros(0)
     ends = between(function.ends, left, right)
     x, weight = quadrature(ends)
-    whole = np.searchsorted(function.ends, ends[:-1] + 1e-11) - 1
+    whole = np.searchsorted(function.ends, 0.5 * (ends[1:] + ends[:-1])) - 1
     values = (function.values @ SAMPLING)[whole]
     for i, panel in enumerate(whole):
         if (ends[i] > function.ends[panel]) or (ends[i + 1] < function.ends[panel + 1]):
