@@ -505,9 +505,9 @@ contains
       if (patch%graded .and. all(zone%rooted .and. zone%known)) values = merge(values, inside, is_solved)
    end subroutine correct_error
 
-   !> What the discrete tractions at nodes far from edges miss of the means of the exact ones, in the unit of the `values`. Within an
-   !> interval of the width h the exact ones differ by p' (x - x_j) from their mean, a dipole of p' h^3/12. The displacements by
-   !> the dipoles are those by tractions -(p' h^2/12)', which the discrete ones have in excess: where h changes in first order.
+   !> What the discrete tractions at nodes far from edges miss of the means of the exact ones, in the unit of the `values`. Within
+   !> an interval of the width h the exact ones differ by p' (x - x_j) from their mean, a dipole of p' h^3/12. The displacements
+   !> by the dipoles are those by tractions -(p' h^2/12)', which the discrete ones have in excess: where h changes in first order.
    pure function missed_by_grading(patch, values) result(missed)
       type(fitted_patch_type), intent(in) :: patch
       real(wp), intent(in) :: values(:)

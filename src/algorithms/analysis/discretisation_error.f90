@@ -466,7 +466,7 @@ contains
    function interval_allowances(simulation, values) result(allowances)
       type(simulation_type), intent(in) :: simulation
       real(wp), intent(in) :: values(:)
-      real(wp) :: allowances(observable_count), of_behaviour(0:error_place)
+      real(wp) :: allowances(observable_count), of_behaviour(0:error_place), fineness
       integer :: i
 
       of_behaviour = allowances_of_behaviours(simulation, simulation%contact%state)
@@ -483,9 +483,10 @@ contains
          call add_narrow_stick(observable_place('smallest_stick_ratio'), contact_interval(model, simulation%contact%state)/ &
                                max(values(observable_place('contact_length')), model%interval()))
          if (.not. allocated(model%scene%mesh%ends)) then
+            fineness = contact_interval(model, simulation%contact%state)/ &
+                       max(0.5_wp*values(observable_place('contact_length')), model%interval())
             where (observables%error == error_local .and. index(observables%name, '_tension') > 0) &
-               allowances = allowances + of_tensions*abs(values)*(2.0_wp*contact_interval(model, simulation%contact%state)/ &
-                                                max(values(observable_place('contact_length')), model%interval()))**2
+               allowances = allowances + of_tensions*fineness**2*abs(values)
          end if
          call add_coarse_slip(simulation%slip, 'dissipation', 1.0_wp)
          if (.not. ieee_is_nan(values(observable_place('largest_slip_range')))) &

@@ -227,8 +227,8 @@ contains
       end do
    end subroutine find_stick_zones
 
-   !> The parts of the stick zones of a patch in which the shear is below the friction limit. Where loads return to former ones, as in
-   !> every cycle that repeats, nodes stick at their limit beside a stick zone of the former loads: tractions have its edges.
+   !> The parts of the stick zones of a patch in which the shear is below the friction limit. Where loads return to former ones, as
+   !> in every cycle that repeats, nodes stick at their limit beside a stick zone of the former loads: tractions have its edges.
    subroutine find_zones_below_limit(model, state, patch, zones)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
