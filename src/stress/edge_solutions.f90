@@ -35,6 +35,7 @@ module mfv_edge_solutions
       procedure :: graded_root
       procedure :: graded_singular
       procedure :: length_unit
+      procedure :: intervals => solved_intervals
    end type graded_solution_type
 
 contains
@@ -329,6 +330,12 @@ contains
 
       length_unit = self%unit
    end function length_unit
+   !> Number of the outermost intervals that are far enough from the end of the solution.
+   pure integer function solved_intervals(self) result(number)
+      class(graded_solution_type), intent(in) :: self
+
+      number = max((size(self%ends) - 1)/2, 1)
+   end function solved_intervals
 
    !> Discrete tractions over the means of the exact ones for an edge `distance` beyond the outer end of the outermost interval,
    !> length, which it may cut; 1 for intervals farther inwards, where the end of the solution is near.
@@ -340,7 +347,7 @@ contains
       integer :: n
 
       ratio = 1.0_wp
-      n = min(intervals, max(size(exact)/2, 1))
+      n = min(intervals, self%intervals())
       exact = power_means(max(self%ends + distance/self%unit, 0.0_wp), self%power)
       exact(1) = exact(1)*max(self%ends(1) + min(distance/self%unit, 0.0_wp), 0.0_wp)/self%ends(1)
       ratio(:n) = (self%discrete(:n, 2) + self%power*distance/self%unit*self%discrete(:n, 1))/max(exact(:n), tiny(1.0_wp))

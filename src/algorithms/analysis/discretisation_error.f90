@@ -38,6 +38,9 @@ module mfv_discretisation_error
    !> Factor on the bars of unequal intervals, whose coarser meshes differ less from them than their errors do: measured
    !> (docs/verification.md).
    real(wp), parameter :: of_unequal_intervals = 2.0_wp
+   !> Least uncertainty of tensions on equal intervals, relative, over (interval/half-width)^2, for coarser meshes that agree better
+   !> because their edges happen to lie alike in an interval: measured (docs/verification.md, the trailing edge).
+   real(wp), parameter :: of_tensions = 0.03_wp
 
 contains
 
@@ -463,7 +466,7 @@ contains
    function interval_allowances(simulation, values) result(allowances)
       type(simulation_type), intent(in) :: simulation
       real(wp), intent(in) :: values(:)
-      real(wp) :: allowances(observable_count), of_behaviour(0:error_place)
+      real(wp) :: allowances(observable_count), of_behaviour(0:error_place), fineness
       integer :: i
 
       of_behaviour = allowances_of_behaviours(simulation, simulation%contact%state)
@@ -481,6 +484,12 @@ contains
             allowances = values(observable_place('contact_length'))*allowances
          call add_narrow_stick(observable_place('smallest_stick_ratio'), contact_interval(model, simulation%contact%state)/ &
                                max(values(observable_place('contact_length')), model%interval()))
+         if (.not. allocated(model%scene%mesh%ends)) then
+            fineness = contact_interval(model, simulation%contact%state)/ &
+                       max(0.5_wp*values(observable_place('contact_length')), model%interval())
+            where (observables%error == error_local .and. index(observables%name, '_tension') > 0) &
+               allowances = allowances + of_tensions*fineness**2*abs(values)
+         end if
          call add_coarse_slip(simulation%slip, 'dissipation', 1.0_wp)
          if (.not. ieee_is_nan(values(observable_place('largest_slip_range')))) &
             call add_hidden('largest_slip_range', maxval(hidden_slip()))

@@ -9,7 +9,7 @@ module mfv_state_interior
    use mfv_motions, only: bulk_motions
    use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
    use mfv_tolerances, only: certified
-   use mfv_zone_edges, only: find_patches, patch_type
+   use mfv_zone_edges, only: find_patches, find_zones_below_limit, patch_type, zone_type
    implicit none
    private
    public :: state_interior, find_edges_at_nodes, find_largest_tension, find_largest_von_mises, surface_stress_at
@@ -109,12 +109,13 @@ contains
 
    !> Edges of contact and stick zones, arc lengths from the origin of x, at the first and last node of each zone; NaN
    !> elsewhere; shape (nodes). A zone of one node has the width of its interval. Stick zones only with a sharp friction
-   !> limit.
+   !> limit, and without nodes at it.
    subroutine find_edges_at_nodes(model, state, contact_edge, stick_edge)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       real(wp), intent(out) :: contact_edge(:), stick_edge(:)
       type(patch_type), allocatable :: patches(:)
+      type(zone_type), allocatable :: zones(:)
       integer :: i, j
 
       contact_edge = ieee_value(1.0_wp, ieee_quiet_nan)
@@ -124,8 +125,9 @@ contains
          associate (patch => patches(i))
             if (patch%last > patch%first) contact_edge([patch%first, patch%last]) = [patch%left, patch%right]
             if (.not. model%scene%friction%is_coulomb()) cycle
-            do j = 1, size(patch%stick)
-               associate (zone => patch%stick(j))
+            call find_zones_below_limit(model, state, patch, zones)
+            do j = 1, size(zones)
+               associate (zone => zones(j))
                   if (zone%last > zone%first) stick_edge([zone%first, zone%last]) = [zone%left, zone%right]
                end associate
             end do

@@ -25,7 +25,7 @@ module mfv_zone_edges
    implicit none
    private
    public :: zone_type, patch_type, zone_edges_type, find_patches, find_zone_edges, outermost_edges, largest_shear, &
-             zones_of, held, ends_with_body, is_beyond_corner, rises_at_end, slipping_run, has_known_error
+             find_zones_below_limit, zones_of, held, ends_with_body, is_beyond_corner, rises_at_end, slipping_run, has_known_error
 
    !> A zone of neighbouring nodes, from `first` to `last`, and its edges: arc lengths from the origin of x, positive to the
    !> right; and the uncertainty of these edges, lengths.
@@ -226,6 +226,40 @@ contains
          patch%stick(i)%right = max(left, right)
       end do
    end subroutine find_stick_zones
+
+   !> The parts of the stick zones of a patch in which the shear is below the friction limit. Where loads return to former ones, as
+   !> in every cycle that repeats, nodes stick at their limit beside a stick zone of the former loads: tractions have its edges.
+   subroutine find_zones_below_limit(model, state, patch, zones)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      type(patch_type), intent(in) :: patch
+      type(zone_type), allocatable, intent(out) :: zones(:)
+      !> A single node at its limit is left to find_stick_edge.
+      integer, parameter :: fewest = 2
+      logical, dimension(size(state%status)) :: below
+      integer :: i, first, last
+      logical :: trimmed(2)
+
+      below = abs(state%fields%shear) < (1.0_wp - significant)*model%static_friction*state%fields%pressure
+      zones = patch%stick
+      do i = 1, size(zones)
+         associate (zone => zones(i))
+            first = zone%first - 1 + findloc(below(zone%first:zone%last), .true., dim=1)
+            last = zone%first - 1 + findloc(below(zone%first:zone%last), .true., dim=1, back=.true.)
+            trimmed = [first - zone%first, zone%last - last] >= fewest
+            if (last < zone%first) then
+               ! All nodes are at their limit.
+               if (zone%last - zone%first + 1 >= fewest) zone%last = zone%first - 1
+               cycle
+            end if
+            if (trimmed(1)) zone%first = first
+            if (trimmed(2)) zone%last = last
+            if (trimmed(1)) call find_stick_edge(model, state, zone, patch, -1, zone%left, zone%left_error)
+            if (trimmed(2)) call find_stick_edge(model, state, zone, patch, 1, zone%right, zone%right_error)
+         end associate
+      end do
+      zones = pack(zones, zones%last >= zones%first)
+   end subroutine find_zones_below_limit
 
    !> Nodes that stick, and those that may slip but have not yet: when a cycle repeats its tractions, many nodes reach their
    !> limit together and rounding errors decide which are called slipping. If no node is called sticking, the last few at rest
@@ -475,6 +509,7 @@ contains
          widest = widest_hidden_slip()
       else
          direction = -slip_sign(state%status(next))
+         if (holds(state%status(next))) direction = sign(1.0_wp, state%fields%shear(next))
       end if
       if (.not. (abs(direction) > 0.0_wp .and. model%scene%friction%is_coulomb())) return
       associate (i => zone%first, j => zone%last)
@@ -523,12 +558,12 @@ contains
       !> slip disagrees with the traction, it locates the edge.
       subroutine correct_by_slip(edge, error)
          real(wp), intent(inout) :: edge, error
-         !> In intervals; unequal ones have mean slips.
+         !> In intervals, the wider one at the edge; unequal ones have mean slips.
          real(wp), parameter :: agreement(2) = [0.35_wp, 1.0_wp], straight = 0.3_wp
          integer :: node, i
          real(wp) :: by_slip, values(0:2)
 
-         if (abs(patch_end - next) < 2) return
+         if (abs(patch_end - next) < 2 .or. holds(state%status(next))) return
          do i = 0, 2
             node = next + side*i
             if (state%status(node) /= state%status(next)) return
@@ -536,7 +571,7 @@ contains
          end do
          if (abs(values(2) - 2.0_wp*values(1) + values(0)) > straight*(values(1) - values(0))) return
          by_slip = edge_by_slip(model, state, next, side, edge)
-         if (abs(by_slip - edge) <= agreement(merge(2, 1, samples%is_integral))*model%width(last)) then
+         if (abs(by_slip - edge) <= agreement(merge(2, 1, samples%is_integral))*maxval(model%width([last, next]))) then
             ! An older edge in the same interval is not seen in the tractions.
             if (has_older_edges(model)) error = max(error, abs(by_slip - edge))
             return
