@@ -35,7 +35,7 @@ Function = Callable[[Array], Array]
 DEGREE = 36
 #: Gauss points of each part of a panel, and halvings of its parts towards its ends.
 GAUSS, HALVINGS = 8, 9
-#: Part of a load segment that is left out, and the friction over mu P/a that may remain where a loop closes.
+#: Part of a load segment that is omitted, and the friction over mu P/a that may remain where a loop closes.
 CLOSING, CLOSED = 1e-7, 1e-4
 
 
