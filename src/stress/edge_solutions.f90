@@ -97,11 +97,12 @@ contains
       columns = reshape([k(:terms - 1), g(:terms - 1), h(:terms - 1)], [terms, terms])
    end subroutine find_columns
 
-   !> The factor at the edge itself, from those of the powers about a place near it.
+   !> The factor at the edge itself, from those of the powers about a place near it; 0 at the edge of a zone that has grown.
    pure real(wp) function root_of(factors, power)
       real(wp), intent(in) :: factors(terms), power
 
-      root_of = factors(2) - (power + 1.0_wp)*factors(3)*shift_of_edge(factors, power)
+      root_of = 0.0_wp
+      if (discriminant_of(factors, power) > 0.0_wp) root_of = factors(2) - (power + 1.0_wp)*factors(3)*shift_of_edge(factors, power)
    end function root_of
 
    !> Factors of the columns of a matrix in `values`, by Cramer's rule.
@@ -128,13 +129,20 @@ contains
       real(wp), intent(in) :: factors(terms), power
       real(wp) :: discriminant
 
-      discriminant = (power*factors(2))**2 - 2.0_wp*power*(power + 1.0_wp)*factors(1)*factors(3)
+      discriminant = discriminant_of(factors, power)
       if (discriminant > 0.0_wp) then
          shift = 2.0_wp*factors(1)/(power*factors(2) + sqrt(discriminant))
       else
          shift = factors(2)/((power + 1.0_wp)*factors(3))
       end if
    end function shift_of_edge
+
+   !> Positive where an edge has tractions of the power `power`.
+   pure real(wp) function discriminant_of(factors, power)
+      real(wp), intent(in) :: factors(terms), power
+
+      discriminant_of = (power*factors(2))**2 - 2.0_wp*power*(power + 1.0_wp)*factors(1)*factors(3)
+   end function discriminant_of
 
    !> Offset and the three solutions from j = 0 on for an exponent, interpolated in the table to 3e-5, k to 9e-4. Verified by
    !> tests/python/test_edge_solutions.py.
