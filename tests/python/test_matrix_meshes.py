@@ -61,6 +61,11 @@ def test_equal_widths_give_what_the_half_plane_gives(coupling: str, poisson_rati
     matrix = solved(half_plane(plane.mesh.x, plane.mesh.width, 1.0, poisson_ratio, 1.0, mean=False), coupling)
     given = dict(read_off(matrix))
     for name, expected in read_off(plane):
+        of_edge = name.split(".")[-1].startswith(("left_", "right_"))
+        if name.endswith("steady_stick_length") or (
+            of_edge and coupling == "full"
+        ):  # of half-planes; with the exponent of the edge
+            continue
         scale = P if name.endswith("force") else 1.0 if "patch_shift" in name or "centre" in name else np.nanmax(np.abs(expected))
         if name.endswith("_force_work"):  # round-off where the force is constant
             scale = np.max(plane.cycles.dissipation)

@@ -51,20 +51,21 @@ contains
       type(edge_field_type) :: edges(2, size(patches))
       type(contact_state_type) :: before
       type(response_type) :: response
-      logical :: known
+      logical :: known, turns
       integer :: i, j
 
       associate (model => simulation%contact%model, state => simulation%contact%state, none => ieee_value(1.0_wp, ieee_quiet_nan))
          edges = edge_field_type(none, none, none, none, none, none, none)
          if (size(patches) > most_patches) return
+         turns = model%moves(motion_rotation) .and. simulation%load(motion_rotation)%control == control_force
          call find_change_if_stuck(simulation, before, response, known)
          do i = 1, size(patches)
             if (model%tangential) edges(:, i)%slip_zone = slip_zones_of(patches(i))
             do j = 1, size(sides)
                call find_root_intensity(model, state, patches(i), sides(j), edges(j, i)%normal, edges(j, i)%reach)
             end do
-            call add_exponents(simulation%contact, patches(i), edges(:, i))
-            if (known) call add_shear(simulation%contact, before, response, patches(i), edges(:, i))
+            call add_exponents(simulation%contact, patches(i), turns, edges(:, i))
+            if (known) call add_shear(simulation%contact, before, response, patches(i), turns, edges(:, i))
             ! No edges: the surfaces repeat.
             if (i == 1 .and. any(patches%to_first > 0.0_wp)) edges(1, i) = edge_field_type(none, none, none, none, none, none, none)
             if (patches(i)%to_first > 0.0_wp) edges(2, i) = edge_field_type(none, none, none, none, none, none, none)
@@ -84,10 +85,12 @@ contains
    end function slip_zones_of
 
    !> Exponents of the pressure at the edges of a patch, and its intensities at corners. Of different bodies whose outermost node
-   !> sticks the edge is not known: the pressure oscillates at a corner, and elsewhere there is a slip zone without a node.
-   subroutine add_exponents(path, patch, edges)
+   !> sticks the edge is not known: the pressure oscillates at a corner, and elsewhere there is a slip zone without a node. `turns`:
+   !> whether the moment is prescribed.
+   subroutine add_exponents(path, patch, turns, edges)
       type(contact_path_type), intent(in) :: path
       type(patch_type), intent(in) :: patch
+      logical, intent(in) :: turns
       type(edge_field_type), intent(inout) :: edges(2)
       logical :: ends(2), unknown(2)
       real(wp) :: powers(2)
@@ -96,7 +99,7 @@ contains
       powers = [patch%left_power, patch%right_power]
       unknown = holds(path%state%status([patch%first, patch%last])) .and. is_coupled(path)
       edges%exponent = merge(powers - 1.0_wp, powers, ends)
-      if (any(ends)) edges%corner = singular_intensities(path%model, path%state%fields%pressure, patch, powers, ends)
+      if (any(ends)) edges%corner = singular_intensities(path%model, path%state%fields%pressure, patch, powers, ends, turns)
       where (.not. ends .or. unknown) edges%corner = ieee_value(1.0_wp, ieee_quiet_nan)
       where (unknown)
          edges%exponent = edges%corner
@@ -113,12 +116,13 @@ contains
    end function is_coupled
 
    !> Intensities of the changes at the edges of a patch, and the slip zones that follow. `before`: the state at the last turning
-   !> point; `response`: the change since then.
-   subroutine add_shear(path, before, response, patch, edges)
+   !> point; `response`: the change since then; `turns`: as above.
+   subroutine add_shear(path, before, response, patch, turns, edges)
       type(contact_path_type), intent(in) :: path
       type(contact_state_type), intent(in) :: before
       type(response_type), intent(in) :: response
       type(patch_type), intent(in) :: patch
+      logical, intent(in) :: turns
       type(edge_field_type), intent(inout) :: edges(2)
       real(wp), parameter :: powers(2) = 0.5_wp
       logical, parameter :: both(2) = .true.
@@ -127,16 +131,17 @@ contains
 
       touched = count(in_contact(before%status(patch%first:patch%last)))
       if (touched == 0) return
-      edges%shear = singular_intensities(path%model, response%rate%shear, patch, powers, both)
+      edges%shear = singular_intensities(path%model, response%rate%shear, patch, powers, both, .false.)
       if (.not. path%model%scene%friction%is_coulomb()) return
-      pressure = singular_intensities(path%model, response%rate%pressure, patch, powers, both)
+      pressure = singular_intensities(path%model, response%rate%pressure, patch, powers, both, turns)
       do i = 1, size(sides)
          edges(i)%asymptotic_slip_zone = asymptotic_slip_zone(path, before, patch, sides(i), edges(i), pressure(i))
       end do
    end subroutine add_shear
 
-   !> Width of the slip zone at an edge by the asymptotes, length; `pressure`: dK_N. NaN at corners, and where the shear before was
-   !> nearly at its limit in this direction already.
+   !> Width of the slip zone at an edge by the asymptotes, length; `pressure`: dK_N. NaN at corners, where nothing sticks now, where
+   !> the shear before is no constant part of its limit over the zone, or is nearly at it in this direction, where an unloading
+   !> alone makes it slip, and beyond half the patch.
    real(wp) function asymptotic_slip_zone(path, before, patch, side, edge, pressure) result(width)
       type(contact_path_type), intent(in) :: path
       type(contact_state_type), intent(in) :: before
@@ -144,21 +149,36 @@ contains
       integer, intent(in) :: side
       type(edge_field_type), intent(in) :: edge
       real(wp), intent(in) :: pressure
-      real(wp), parameter :: nearly_at_limit = 0.95_wp
-      real(wp) :: friction, ratio
-      integer :: node
+      !> The outer part of the zone in which the shear before must be a constant part of its limit.
+      real(wp), parameter :: nearly_at_limit = 0.95_wp, constant = 0.1_wp, inner = 0.9_wp
+      integer, parameter :: rounds = 3
+      real(wp) :: friction, ratio, found
+      integer :: node, last, i
+      real(wp), allocatable :: limit(:), shear(:)
 
       width = ieee_value(1.0_wp, ieee_quiet_nan)
       node = patch%first - 1 + findloc(in_contact(before%status(patch%first:patch%last)), .true., dim=1, back=side > 0)
       friction = path%model%kinetic_friction(node)
-      if (ieee_is_nan(edge%normal) .or. ieee_is_nan(edge%shear) .or. .not. friction > 0.0_wp) return
-      ratio = 0.0_wp
-      if (before%fields%pressure(node) > 0.0_wp) ratio = sign(1.0_wp, edge%shear)*before%fields%shear(node)/ &
-                                                         (friction*before%fields%pressure(node))
-      if (ratio > nearly_at_limit) return
-      width = 2.0_wp*(abs(edge%shear) - friction*pressure)/((1.0_wp - max(ratio, -1.0_wp))*friction*edge%normal)
-      if (width > 0.0_wp) width = width + 2.0_wp*pressure/edge%normal
-      width = max(width, 0.0_wp)
+      if (ieee_is_nan(edge%normal) .or. ieee_is_nan(edge%shear) .or. .not. friction > 0.0_wp .or. size(patch%stick) == 0) return
+      if (pressure < 0.0_wp .and. abs(edge%shear) < friction*abs(pressure)) return
+      last = node
+      do i = 1, rounds
+         limit = friction*before%fields%pressure(node:last:-side)
+         shear = sign(1.0_wp, edge%shear)*before%fields%shear(node:last:-side)
+         ratio = max(sum(shear)/max(sum(limit), tiny(1.0_wp)), -1.0_wp)
+         if (ratio > nearly_at_limit) return
+         found = max(2.0_wp*(abs(edge%shear) - friction*pressure)/((1.0_wp - ratio)*friction*edge%normal), 0.0_wp)
+         ! From the present edge.
+         if (found > 0.0_wp) found = max(found + 2.0_wp*pressure/edge%normal, 0.0_wp)
+         last = node
+         do
+            if (last - side < patch%first .or. last - side > patch%last) exit
+            if (abs(path%model%arc(last - side) - merge(patch%right, patch%left, side > 0)) > inner*found) exit
+            last = last - side
+         end do
+      end do
+      if (maxval(abs(shear - ratio*limit)) > constant*maxval(limit)) return
+      if (found <= 0.5_wp*patch%length()) width = found
    end function asymptotic_slip_zone
 
    !> The change of the tractions since the last turning point of the loads, as rates of `response`, if all nodes that are now in
@@ -211,13 +231,14 @@ contains
       end associate
    end function changes_of_loads
 
-   !> Length of the part that sticks both at the far end of a cycle and at its end; NaN with several patches or stick zones.
+   !> Length of the part that sticks both at the far end of a cycle and at its end; NaN with several patches or stick zones, or other
+   !> turning points between them.
    elemental real(wp) function permanent_stick_length(cycle) result(length)
       type(cycle_type), intent(in) :: cycle
 
       associate (there => cycle%reversal%edges, back => cycle%return%edges)
          length = 0.0_wp
-         if (.not. (is_one_zone(there) .and. is_one_zone(back))) length = ieee_value(1.0_wp, ieee_quiet_nan)
+         if (.not. (is_one_zone(there) .and. is_one_zone(back)) .or. cycle%turns /= 2) length = ieee_value(1.0_wp, ieee_quiet_nan)
          if (there%stick .and. back%stick) &
             length = length + max(min(there%stick_right, back%stick_right) - max(there%stick_left, back%stick_left), 0.0_wp)
       end associate
@@ -272,8 +293,7 @@ contains
 
       superposes = .false.
       associate (model => simulation%contact%model, scene => simulation%contact%model%scene)
-         if (.not. (model%tangential .and. model%upright) .or. cycle%step > size(scene%steps)) return
-         if (scene%steps(cycle%step)%turns() /= 2) return
+         if (.not. (model%tangential .and. model%upright) .or. cycle%turns /= 2) return
          if (scene%lower%deforms_as_circle() .or. scene%upper%deforms_as_circle() .or. scene%lower%is_matrix()) return
          if (scene%is_layered() .or. scene%wear%acts() .or. .not. scene%friction%is_coulomb()) return
          if (model%compliance%elastic_block(block_up) .and. .not. alike(scene)) return

@@ -35,6 +35,8 @@ module mfv_cycle
    type :: cycle_type
       !> Step of the load history, number of the cycle in this step, and number over all steps.
       integer :: step = 0, number = 0, overall = 0
+      !> Its turning points.
+      integer :: turns = 2
       !> Start; the turning point with the forces that differ most from those at the start; return.
       type(turning_point_type) :: start, reversal, return
       !> Extremes at the turning points, without the start: of forces and motions, and of what they cause.

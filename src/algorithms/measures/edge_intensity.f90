@@ -81,7 +81,7 @@ contains
       s = abs(inwards(model%arc, patch, side, nodes) - merge(patch%right, patch%left, side > 0))
       half = 0.5_wp*inwards(model%width, patch, side, nodes)
       if (.not. allocated(model%scene%mesh%ends)) half = 0.0_wp
-      rest = abs(inwards(pressure, patch, side, nodes)/mean_power(s, half, power) - 1.0_wp)
+      rest = abs(inwards(pressure, patch, side, nodes)/max(mean_power(s, half, power), tiny(1.0_wp)) - 1.0_wp)
       i = omitted + findloc(rest(omitted + 1:) > small, .true., dim=1)
       if (i < omitted + 2) return
       if (s(i) > half_length(patch)) return
@@ -99,12 +99,13 @@ contains
 
    !> Intensities at the left and right edge of a patch, force/length^(3/2), of a `traction`, force/length^2, shape (nodes), that
    !> grows as the distance to the `powers` less one (a half, but for slip with full coupling): the pressure at corners, and
-   !> tractions of stuck nodes. NaN as above; at an edge that is not `singular` 0, for that of the other one.
-   function singular_intensities(model, traction, patch, powers, singular) result(intensities)
+   !> tractions of stuck nodes. NaN as above; at an edge that is not `singular` 0, for that of the other one. `turns`: see
+   !> move_edges.
+   function singular_intensities(model, traction, patch, powers, singular, turns) result(intensities)
       type(contact_model_type), intent(in) :: model
       real(wp), intent(in) :: traction(:), powers(2)
       type(patch_type), intent(in) :: patch
-      logical, intent(in) :: singular(2)
+      logical, intent(in) :: singular(2), turns
       real(wp) :: intensities(2)
       integer, parameter :: sides(2) = [-1, 1]
       real(wp) :: outwards(2), factor, offset, unit
@@ -130,7 +131,7 @@ contains
          end associate
          intensities(i) = factor*unit**(1.0_wp - powers(i))*half_length(patch)**(powers(i) - 0.5_wp)
       end do
-      if (all(singular)) call move_edges(model, patch, outwards, intensities)
+      if (all(singular)) call move_edges(model, patch, outwards, turns, intensities)
 
    contains
 
@@ -146,17 +147,20 @@ contains
 
    !> Intensities at the edges of a patch from those of the discrete solution, whose edges lie `outwards` of the outermost nodes,
    !> lengths. Tractions (m + d (x - x0))/sqrt((x - l)(r - x)), x0 the middle, have the resultant pi m and the displacement A d x:
-   !> m and d are those of the loads and do not depend on where the edges are.
-   pure subroutine move_edges(model, patch, outwards, intensities)
+   !> m is that of the force; d that of the strain, or of the rotation, wherever the edges are, or, of a prescribed moment (`turns`),
+   !> pi d/8 times the square of the length.
+   pure subroutine move_edges(model, patch, outwards, turns, intensities)
       type(contact_model_type), intent(in) :: model
       type(patch_type), intent(in) :: patch
       real(wp), intent(in) :: outwards(2)
+      logical, intent(in) :: turns
       real(wp), intent(inout) :: intensities(2)
       real(wp) :: length, mean, slope
 
       length = model%arc(patch%last) - model%arc(patch%first) + sum(outwards)
       mean = 0.5_wp*sum(intensities)*sqrt(length)
       slope = (intensities(2) - intensities(1))/sqrt(length)
+      if (turns) slope = slope*(length/patch%length())**2
       length = patch%length()
       intensities = (mean + [-0.5_wp, 0.5_wp]*slope*length)/sqrt(length)
    end subroutine move_edges

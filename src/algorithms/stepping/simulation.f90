@@ -810,6 +810,7 @@ contains
       end if
       self%cycles_done = self%cycles_done + 1
       cycle%number = leg/turns
+      cycle%turns = turns
       cycle%worn_area = self%contact%model%force(self%contact%state%worn)
       cycle%overall = self%cycles_done
       cycle%start = cycle%return

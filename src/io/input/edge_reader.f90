@@ -1,6 +1,6 @@
 !> A contact edge by itself (shape='edge'): its parabola, and its loads given by the intensities K_N and K_T of its right edge.
 module mfv_edge_reader
-   use mfv_body, only: new_body
+   use mfv_compliance, only: coupling_none
    use mfv_error, only: error_type
    use mfv_geometry, only: new_power
    use mfv_key_reader
@@ -9,6 +9,7 @@ module mfv_edge_reader
    use mfv_near_field, only: near_field_type
    use mfv_reference_edge, only: edge_contact_type, new_edge_contact
    use mfv_scene, only: scene_type, step_type
+   use mfv_tolerances, only: rounding
    implicit none
    private
    public :: form_edge, convert_intensities
@@ -100,6 +101,9 @@ contains
          call complain('shear_intensity', 'tangential_force, force_ratio or shift is also given; prescribe only one of them')
       else if (.not. scene%friction%acts()) then
          call complain('shear_intensity', needs_friction)
+      else if (scene%coupling /= coupling_none .and. is_coupled()) then
+         call complain('shear_intensity', "needs coupling='none' in &scene, or bodies of one material: else "// &
+                       'pressing shears the edge, too')
       else if (control_of(motion_approach) /= control_force) then
          call complain('shear_intensity', 'needs a normal_intensity or normal_force, here or in an earlier step without cycles')
       end if
@@ -121,6 +125,14 @@ contains
             call reader%complain(group, number, 'file', 'column '''//name//''': '//why, error)
          end if
       end subroutine complain
+
+      !> Whether normal and tangential displacements of the pair depend on each other.
+      pure logical function is_coupled()
+         type(near_field_type) :: pair
+
+         pair = scene%near_field()
+         is_coupled = pair%coupling_ratio() > rounding
+      end function is_coupled
 
       !> The control of a motion in this group, or in the last step before it without cycles.
       pure integer function control_of(motion) result(control)
