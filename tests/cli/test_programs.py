@@ -206,6 +206,9 @@ def test_error_estimate_in_summary_and_file(tmp_path):
             *names, "contact_length", "contact_centre", "approach", "shift", "lower_tension_x", "largest_lower_tension",
             "largest_lower_tension_x", "largest_pressure", "largest_pressure_x", "largest_shear", "largest_shear_x", "smallest_stick_ratio",
             "largest_stick_ratio", "largest_slip_range", "largest_slip_range_x",
+            *(f"{side}_{name}" for side in ("left", "right") for name in (
+                "normal_intensity", "shear_intensity", "slip_zone", "asymptotic_slip_zone", "edge_reach",
+            )),
         }  # fmt: skip
         for name, dataset in estimate.items():
             assert dataset.attrs["units"] and dataset.attrs["long_name"]

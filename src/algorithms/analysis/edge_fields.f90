@@ -231,8 +231,8 @@ contains
       end associate
    end function changes_of_loads
 
-   !> Length of the part that sticks both at the far end of a cycle and at its end; NaN with several patches or stick zones, or other
-   !> turning points between them.
+   !> Length of the part that sticks both at the far end of a cycle and at its end; NaN with several patches or stick zones, and
+   !> with turning points between these two.
    elemental real(wp) function permanent_stick_length(cycle) result(length)
       type(cycle_type), intent(in) :: cycle
 

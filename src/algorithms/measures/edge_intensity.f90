@@ -147,7 +147,7 @@ contains
 
    !> Intensities at the edges of a patch from those of the discrete solution, whose edges lie `outwards` of the outermost nodes,
    !> lengths. Tractions (m + d (x - x0))/sqrt((x - l)(r - x)), x0 the middle, have the resultant pi m and the displacement A d x:
-   !> m is that of the force; d that of the strain, or of the rotation, wherever the edges are, or, of a prescribed moment (`turns`),
+   !> m is that of the force; d that of the strain, or of the rotation, wherever the edges are, or of a prescribed moment (`turns`):
    !> pi d/8 times the square of the length.
    pure subroutine move_edges(model, patch, outwards, turns, intensities)
       type(contact_model_type), intent(in) :: model
