@@ -63,12 +63,13 @@ contains
    end subroutine find_solved_distance
 
    !> Factor a of tractions a s^power + b s^(power + 1) at the distance s from their edge, which may lie anywhere near the outermost
-   !> node, from those of the outermost three nodes, outermost first: units of the interval.
-   pure real(wp) function root_factor(tractions, power) result(factor)
-      real(wp), intent(in) :: tractions(0:terms - 1), power
+   !> node, from those of the three nodes from `first` (0 or 1) on, outermost first: units of the interval.
+   pure real(wp) function root_factor(tractions, power, first) result(factor)
+      real(wp), intent(in) :: tractions(terms), power
+      integer, intent(in) :: first
       real(wp) :: offset, columns(terms, terms)
 
-      call find_columns(power, offset, columns)
+      call find_columns(power, first, offset, columns)
       factor = root_of(factors_of(columns, tractions), power)
    end function root_factor
 
@@ -81,20 +82,23 @@ contains
       real(wp), parameter :: half = 0.5_wp
       real(wp) :: columns(terms, terms), factors(terms)
 
-      call find_columns(power, offset, columns)
+      call find_columns(power, 0, offset, columns)
       factors = factors_of(columns, tractions)
       offset = offset - half
       factor = factors(1) + half*power*factors(2) + 0.5_wp*half**2*power*(power + 1.0_wp)*factors(3)
    end subroutine find_singular_factor
 
-   !> The three solutions at the outermost three nodes.
-   pure subroutine find_columns(power, offset, columns)
+   !> The three solutions at the three nodes from `first` on.
+   pure subroutine find_columns(power, first, offset, columns)
       real(wp), intent(in) :: power
+      integer, intent(in) :: first
       real(wp), intent(out) :: offset, columns(terms, terms)
       real(wp) :: g(0:most_tabulated), k(0:most_tabulated), h(0:most_tabulated - 1)
 
       call find_edge_solutions(power, offset, g, k, h)
-      columns = reshape([k(:terms - 1), g(:terms - 1), h(:terms - 1)], [terms, terms])
+      associate (last => first + terms - 1)
+         columns = reshape([k(first:last), g(first:last), h(first:last)], [terms, terms])
+      end associate
    end subroutine find_columns
 
    !> The factor at the edge itself, from those of the powers about a place near it; 0 at the edge of a zone that has grown.
@@ -314,12 +318,13 @@ contains
       end associate
    end subroutine edge_beyond
 
-   !> As root_factor, from the tractions of three or more intervals, outermost first; in units of length_unit.
-   pure real(wp) function graded_root(self, tractions) result(factor)
+   !> As root_factor, in units of length_unit.
+   pure real(wp) function graded_root(self, tractions, first) result(factor)
       class(graded_solution_type), intent(in) :: self
-      real(wp), intent(in) :: tractions(:)
+      real(wp), intent(in) :: tractions(terms)
+      integer, intent(in) :: first
 
-      factor = root_of(factors_of(self%discrete(:terms, :), tractions(:terms)), self%power)
+      factor = root_of(factors_of(self%discrete(first + 1:first + terms, :), tractions), self%power)
    end function graded_root
 
    !> As find_singular_factor; the edge of the discrete solution is the outer end of the outermost interval.

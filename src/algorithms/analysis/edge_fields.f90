@@ -21,7 +21,7 @@ module mfv_edge_fields
    use mfv_node_status, only: holds, in_contact, node_open, node_stick
    use mfv_simulation, only: mark_turn, simulation_type
    use mfv_tolerances, only: certified, significant
-   use mfv_zone_edges, only: find_zone_edges, patch_type, zone_edges_type
+   use mfv_zone_edges, only: find_zone_edges, is_beyond_corner, patch_type, zone_edges_type
    implicit none
    private
    public :: edge_field_type, edge_fields_of, permanent_stick_length, steady_stick_length
@@ -99,6 +99,8 @@ contains
       powers = [patch%left_power, patch%right_power]
       unknown = holds(path%state%status([patch%first, patch%last])) .and. is_coupled(path)
       edges%exponent = merge(powers - 1.0_wp, powers, ends)
+      ! Other surfaces that end there are cut off.
+      unknown = unknown .or. ends .and. .not. [is_corner(path, patch%first, -1), is_corner(path, patch%last, 1)]
       if (any(ends)) edges%corner = singular_intensities(path%model, path%state%fields%pressure, patch, powers, ends, turns)
       where (.not. ends .or. unknown) edges%corner = ieee_value(1.0_wp, ieee_quiet_nan)
       where (unknown)
@@ -107,6 +109,14 @@ contains
          edges%reach = edges%corner
       end where
    end subroutine add_exponents
+
+   !> Whether a sharp punch ends beyond a node on a side.
+   logical function is_corner(path, node, side)
+      type(contact_path_type), intent(in) :: path
+      integer, intent(in) :: node, side
+
+      is_corner = is_beyond_corner(path%model, path%model%arc(node) + side*path%model%width(node))
+   end function is_corner
 
    !> Whether pressure and shear of nodes that stick depend on each other next to an edge.
    logical function is_coupled(path)
@@ -184,7 +194,7 @@ contains
    !> The change of the tractions since the last turning point of the loads, as rates of `response`, if all nodes that are now in
    !> contact had been so and stuck; `before`: the state there. Not `known` without friction or contact, before the first turning
    !> point, and where the tractions oscillate next to an edge (bodies of different materials with full coupling, or with Goodman's
-   !> where the normal force changes).
+   !> where the normal force changes); nor while the bodies roll.
    subroutine find_change_if_stuck(simulation, before, response, known)
       type(simulation_type), intent(in) :: simulation
       type(contact_state_type), intent(out) :: before
@@ -196,7 +206,7 @@ contains
 
       associate (path => simulation%contact)
          known = path%model%tangential .and. any(in_contact(path%state%status)) .and. simulation%marks(mark_turn)%step > 0 .and. &
-                 .not. is_coupled(path)
+                 .not. is_coupled(path) .and. .not. (path%model%moves(motion_rotation) .and. path%model%rolls())
          if (.not. known) return
          before = simulation%padded(simulation%marks(mark_turn))
          call path%set_rows(constraints, .false.)

@@ -602,12 +602,12 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
       real(wp), parameter :: least_part = 1.0e-4_wp
-      character(len=120) :: names
+      character(len=160) :: names
 
       if (simulation%cycle_count == 0) return
       associate (cycle => simulation%cycles(simulation%cycle_count))
          if (cycle%dissipation() >= least_part*cycle%first_dissipation) return
-         names = 'largest_slip_range stick_ratio_reversal smallest_stick_ratio'
+         names = 'largest_slip_range stick_ratio_reversal smallest_stick_ratio permanent_stick_length'
          if (cycle%dissipation() > 0.0_wp) names = trim(names)//' stick_ratio stick_ratio_return largest_stick_ratio'
          call add_unresolved(unresolved, trim(names), 'the slip vanishes from cycle to cycle: the last one dissipates '// &
                              to_text(cycle%dissipation()/cycle%first_dissipation, 2)//' of the first one', &

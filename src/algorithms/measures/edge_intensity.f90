@@ -26,14 +26,16 @@ contains
 
    !> The pressure at the left (`side` -1) or right (1) edge of a patch where it vanishes: `intensity` K_N, force/length^(5/2), and
    !> `reach`, length, the distance at which the pressure differs from that by a tenth. NaN at sharp corners, with fewer
-   !> than three nodes, and where the equations are not those of mfv_edge_solutions.
+   !> than three nodes, where the profile is not smooth there, and where the equations are not those of mfv_edge_solutions.
    subroutine find_root_intensity(model, state, patch, side, intensity, reach)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       type(patch_type), intent(in) :: patch
       integer, intent(in) :: side
       real(wp), intent(out) :: intensity, reach
-      real(wp) :: factor, unit, power
+      !> Part by which the next three nodes may give another intensity: kinks of profiles change it from node to node.
+      real(wp), parameter :: smooth = 0.05_wp
+      real(wp) :: factor, farther, unit, power
 
       intensity = ieee_value(1.0_wp, ieee_quiet_nan)
       reach = intensity
@@ -44,10 +46,12 @@ contains
             call solve_graded()
          else
             unit = model%width(outermost(patch, side))
-            factor = root_factor(pressure(:samples), power)
+            factor = root_factor(pressure(:samples), power, 0)
+            farther = factor
+            if (size(pressure) > samples) farther = root_factor(pressure(2:samples + 1), power, 1)
          end if
       end associate
-      if (.not. factor > 0.0_wp) return
+      if (.not. factor > 0.0_wp .or. abs(farther - factor) > smooth*factor) return
       intensity = factor/unit**power
       reach = reach_of(model, state%fields%pressure/intensity, patch, side, power)
       intensity = intensity*half_length(patch)**(power - 0.5_wp)
@@ -59,7 +63,11 @@ contains
 
          solution = graded_at(model, patch, side, power)
          unit = solution%length_unit()
-         factor = solution%graded_root(inwards(state%fields%pressure, patch, side))
+         associate (pressure => inwards(state%fields%pressure, patch, side))
+            factor = solution%graded_root(pressure(:samples), 0)
+            farther = factor
+            if (size(pressure) > samples) farther = solution%graded_root(pressure(2:samples + 1), 1)
+         end associate
       end subroutine solve_graded
    end subroutine find_root_intensity
 

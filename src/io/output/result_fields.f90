@@ -11,7 +11,7 @@ module mfv_result_fields
    use mfv_compliance, only: coupling_names
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
-   use mfv_edge_fields, only: edge_field_type, edge_fields_of, permanent_stick_length
+   use mfv_edge_fields, only: edge_field_type, edge_fields_of
    use mfv_error_bar
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
@@ -710,8 +710,6 @@ call list%add('contact_right', simulation%contact%model%scene%x_of_arc(patches%r
                     'reversal, along the surface from the origin')
       call list%add('contact_centre_return', c%return%edges%centre(), along, 'length', 'middle of the contact at the end of '// &
                     'the cycle, along the surface from the origin')
-      call list%add('permanent_stick_length', permanent_stick_length(c), along, 'length', 'length that sticks at both ends of '// &
-                    'the cycle; NaN with several patches or stick zones')
       if (simulation%marks(mark_cycle_start)%step == 0 .or. simulation%marks(mark_return)%reversal == 0) return
       before = simulation%padded(simulation%marks(mark_cycle_start))
       after = simulation%padded(simulation%marks(mark_return))
