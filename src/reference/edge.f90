@@ -7,7 +7,7 @@ module mfv_reference_edge
    use mfv_kinds, only: pi, wp
    implicit none
    private
-   public :: edge_contact_type, new_edge_contact
+   public :: edge_contact_type
 
    !> K_N is `intensity` (force/length^(5/2)) at the half-width `length`; compliances A and At, length^2/force.
    type :: edge_contact_type
@@ -21,13 +21,6 @@ module mfv_reference_edge
    end type edge_contact_type
 
 contains
-
-   !> See edge_contact_type.
-   pure type(edge_contact_type) function new_edge_contact(intensity, length, normal, tangential) result(edge)
-      real(wp), intent(in) :: intensity, length, normal, tangential
-
-      edge = edge_contact_type(intensity, length, normal, tangential)
-   end function new_edge_contact
 
    !> Curvature of the parabola, 1/length.
    elemental real(wp) function curvature(self)

@@ -343,6 +343,7 @@ contains
 
       length_unit = self%unit
    end function length_unit
+
    !> Number of the outermost intervals that are far enough from the end of the solution.
    pure integer function solved_intervals(self) result(number)
       class(graded_solution_type), intent(in) :: self

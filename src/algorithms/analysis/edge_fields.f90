@@ -24,7 +24,7 @@ module mfv_edge_fields
    use mfv_zone_edges, only: find_zone_edges, is_beyond_corner, patch_type, zone_edges_type
    implicit none
    private
-   public :: edge_field_type, edge_fields_of, permanent_stick_length, steady_stick_length
+   public :: edge_field_type, edge_fields_of, edge_quantities, permanent_stick_length, steady_stick_length
 
    !> A contact edge. NaN where something is not defined.
    type :: edge_field_type
@@ -36,7 +36,13 @@ module mfv_edge_fields
       !> Width of the slip zone next to the edge, from the stick zone and by the asymptotes; distance at which the pressure differs
       !> from its asymptote by a tenth; lengths.
       real(wp) :: slip_zone, asymptotic_slip_zone, reach
+   contains
+      procedure :: values => values_of_edge
    end type edge_field_type
+
+   !> Names of the observables of an edge after its side, in the order of its values.
+   character(*), parameter :: edge_quantities(7) = [character(21) :: 'normal_intensity', 'shear_intensity', 'slip_zone', &
+                                                          'asymptotic_slip_zone', 'edge_reach', 'edge_exponent', 'corner_intensity']
 
    !> Most contact patches of which intensities are found.
    integer, parameter :: most_patches = 20
@@ -44,18 +50,27 @@ module mfv_edge_fields
 
 contains
 
+   !> The values of an edge, in the order of edge_quantities.
+   pure function values_of_edge(self) result(values)
+      class(edge_field_type), intent(in) :: self
+      real(wp) :: values(size(edge_quantities))
+
+      values = [self%normal, self%shear, self%slip_zone, self%asymptotic_slip_zone, self%reach, self%exponent, self%corner]
+   end function values_of_edge
+
    !> The left and right edge of every patch of the present state, shape (2, patches).
    function edge_fields_of(simulation, patches) result(edges)
       type(simulation_type), intent(in) :: simulation
       type(patch_type), intent(in) :: patches(:)
-      type(edge_field_type) :: edges(2, size(patches))
+      type(edge_field_type) :: edges(2, size(patches)), undefined
       type(contact_state_type) :: before
       type(response_type) :: response
       logical :: known, turns
       integer :: i, j
 
       associate (model => simulation%contact%model, state => simulation%contact%state, none => ieee_value(1.0_wp, ieee_quiet_nan))
-         edges = edge_field_type(none, none, none, none, none, none, none)
+         undefined = edge_field_type(none, none, none, none, none, none, none)
+         edges = undefined
          if (size(patches) > most_patches) return
          turns = model%moves(motion_rotation) .and. simulation%load(motion_rotation)%control == control_force
          call find_change_if_stuck(simulation, before, response, known)
@@ -67,8 +82,8 @@ contains
             call add_exponents(simulation%contact, patches(i), turns, edges(:, i))
             if (known) call add_shear(simulation%contact, before, response, patches(i), turns, edges(:, i))
             ! No edges: the surfaces repeat.
-            if (i == 1 .and. any(patches%to_first > 0.0_wp)) edges(1, i) = edge_field_type(none, none, none, none, none, none, none)
-            if (patches(i)%to_first > 0.0_wp) edges(2, i) = edge_field_type(none, none, none, none, none, none, none)
+            if (i == 1 .and. any(patches%to_first > 0.0_wp)) edges(1, i) = undefined
+            if (patches(i)%to_first > 0.0_wp) edges(2, i) = undefined
          end do
       end associate
    end function edge_fields_of
@@ -137,10 +152,9 @@ contains
       real(wp), parameter :: powers(2) = 0.5_wp
       logical, parameter :: both(2) = .true.
       real(wp) :: pressure(2)
-      integer :: touched, i
+      integer :: i
 
-      touched = count(in_contact(before%status(patch%first:patch%last)))
-      if (touched == 0) return
+      if (.not. any(in_contact(before%status(patch%first:patch%last)))) return
       edges%shear = singular_intensities(path%model, response%rate%shear, patch, powers, both, .false.)
       if (.not. path%model%scene%friction%is_coulomb()) return
       pressure = singular_intensities(path%model, response%rate%pressure, patch, powers, both, turns)
@@ -264,7 +278,7 @@ contains
 
    !> Length of the permanent stick zone of steady cycles on a straight load path, by superposition: the contact under the normal
    !> force (P1 + P2)/2 - |Q2 - Q1|/(2 mu), where |Q2 - Q1| > mu |P2 - P1| (Barber, Davies and Hills 2011; half-planes without
-   !> coupling, of any profiles). NaN for other bodies and load histories, and where nothing would stick.
+   !> coupling, of any profiles). NaN for other bodies and load histories, where nothing would stick, and for more than most_patches.
    function steady_stick_length(simulation, cycle) result(length)
       type(simulation_type), intent(in) :: simulation
       type(cycle_type), intent(in) :: cycle
@@ -276,7 +290,7 @@ contains
       real(wp) :: normal, change(2), friction
 
       length = ieee_value(1.0_wp, ieee_quiet_nan)
-      if (.not. superposes(simulation, cycle)) return
+      if (cycle%return%edges%patches > most_patches .or. .not. superposes(simulation, cycle)) return
       associate (there => cycle%reversal%force, back => cycle%return%force)
          friction = simulation%contact%model%scene%friction%static%largest()
          change = abs([back(motion_approach) - there(motion_approach), back(motion_shift) - there(motion_shift)])

@@ -5,7 +5,8 @@ module mfv_observables
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
-   use mfv_edge_fields, only: edge_field_type, edge_fields_of, permanent_stick_length, steady_stick_length
+   use mfv_edge_fields, only: edge_field_type, edge_fields_of, edge_quantities, permanent_stick_length, &
+                              steady_stick_length
    use mfv_kinds, only: pi, wp
    use mfv_load_extremes, only: candidate_tension, candidate_von_mises, extreme_type, load_extremes_type
    use mfv_motions, only: motions, motion_count => user_motions, motion_approach, motion_shift
@@ -179,35 +180,35 @@ module mfv_observables
                                 row_type('left_normal_intensity', 'force/length^(5/2)', error_edge_field, &
                                          'K_N at the left edge of the contact at the end: pressure K_N sqrt(s), distance s'), &
                                 row_type('left_shear_intensity', 'force/length^(3/2)', error_edge_field, &
-                                         'K_T there: shear if stuck, since the last turning point of the loads, K_T/sqrt(s)'), &
+                                         'K_T at the left edge: shear K_T/sqrt(s) if stuck since the last turning point'), &
                                 row_type('left_slip_zone', 'length', error_stick, &
                                          'width of the slip zone at the left edge at the end'), &
                                 row_type('left_asymptotic_slip_zone', 'length', error_edge_field, &
-                                         'the same by K_N and K_T alone'), &
+                                         'width of the slip zone at the left edge by K_N and K_T'), &
                                 row_type('left_edge_reach', 'length', error_edge_field, &
-                                         'distance from it at which the pressure differs from K_N sqrt(s) by a tenth'), &
+                                         'distance from the left edge where p is a tenth off K_N sqrt(s)'), &
                                 row_type('left_edge_exponent', '1', error_none, &
-                                         'exponent of s in the pressure there: 1/2; corners -1/2; others by coupled slip'), &
+                                         'exponent of s in the pressure at the left edge, 1/2; corners -1/2'), &
                                 row_type('left_corner_intensity', 'force/length^(3/2)', error_edge_field, &
-                                         'intensity of the pressure at a corner at the left end, K/sqrt(s)'), &
+                                         'intensity K of the pressure K/sqrt(s) of a corner at the left end'), &
                                 row_type('right_normal_intensity', 'force/length^(5/2)', error_edge_field, &
                                          'K_N at the right edge of the contact at the end: pressure K_N sqrt(s), distance s'), &
                                 row_type('right_shear_intensity', 'force/length^(3/2)', error_edge_field, &
-                                         'K_T there: shear if stuck, since the last turning point of the loads, K_T/sqrt(s)'), &
+                                         'K_T at the right edge: shear K_T/sqrt(s) if stuck since the last turning point'), &
                                 row_type('right_slip_zone', 'length', error_stick, &
                                          'width of the slip zone at the right edge at the end'), &
                                 row_type('right_asymptotic_slip_zone', 'length', error_edge_field, &
-                                         'the same by K_N and K_T alone'), &
+                                         'width of the slip zone at the right edge by K_N and K_T'), &
                                 row_type('right_edge_reach', 'length', error_edge_field, &
-                                         'distance from it at which the pressure differs from K_N sqrt(s) by a tenth'), &
+                                         'distance from the right edge where p is a tenth off K_N sqrt(s)'), &
                                 row_type('right_edge_exponent', '1', error_none, &
-                                         'exponent of s in the pressure there: 1/2; corners -1/2; others by coupled slip'), &
+                                         'exponent of s in the pressure at the right edge, 1/2; corners -1/2'), &
                                 row_type('right_corner_intensity', 'force/length^(3/2)', error_edge_field, &
-                                         'intensity of the pressure at a corner at the right end, K/sqrt(s)'), &
+                                         'intensity K of the pressure K/sqrt(s) of a corner at the right end'), &
                                 row_type('permanent_stick_length', 'length', error_stick, &
                                          'length that sticks at both ends of the last cycle'), &
                                 row_type('steady_stick_length', 'length', error_edge_field, &
-                                         'the same of steady cycles on a straight load path, by superposition')]
+                                         'length that sticks in steady cycles on a straight load path, by superposition')]
 
 contains
 
@@ -311,14 +312,13 @@ contains
       subroutine put_edge(side, edge)
          character(*), intent(in) :: side
          type(edge_field_type), intent(in) :: edge
+         integer :: i
 
-         call put(values, side//'_normal_intensity', edge%normal)
-         call put(values, side//'_shear_intensity', edge%shear)
-         call put(values, side//'_slip_zone', edge%slip_zone)
-         call put(values, side//'_asymptotic_slip_zone', edge%asymptotic_slip_zone)
-         call put(values, side//'_edge_reach', edge%reach)
-         call put(values, side//'_edge_exponent', edge%exponent)
-         call put(values, side//'_corner_intensity', edge%corner)
+         associate (of_edge => edge%values())
+            do i = 1, size(edge_quantities)
+               call put(values, side//'_'//trim(edge_quantities(i)), of_edge(i))
+            end do
+         end associate
       end subroutine put_edge
    end subroutine add_edge_fields
 

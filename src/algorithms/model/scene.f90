@@ -21,7 +21,7 @@ module mfv_scene
              most_cycles, most_of_datum, algorithm_mfv, algorithm_conventional, stepping_event, stepping_nominal, stepping_leap, &
              stepping_auto, integration_second_order, integration_explicit, solver_auto, solver_dgesv, solver_reduced, solver_fft, &
              algorithm_names, stepping_names, integration_names, solver_names, friction_tolerance_part, most_by_points, &
-             accuracy_by_mesh
+             accuracy_by_mesh, last_with_target
 
    !> The Method of First Violation (dissertation section 2.3) or the conventional algorithm (2.2). Names here and below: values of
    !> the keys of &solver, in the order of the numbers.
@@ -185,6 +185,14 @@ contains
       turns = 2
       if (allocated(self%path)) turns = size(self%path, 2)
    end function turns_of_step
+
+   !> The last step that prescribes a motion or its force, 0 for none. A step with cycles ends at its initial loads.
+   pure integer function last_with_target(steps, motion) result(last)
+      type(step_type), intent(in) :: steps(:)
+      integer, intent(in) :: motion
+
+      last = findloc(steps%control(motion) /= control_keep .and. steps%cycles == 0, .true., dim=1, back=.true.)
+   end function last_with_target
 
    !> Load segments of the step: one, or those of all its cycles.
    elemental integer function segments_of_step(self) result(segments)

@@ -7,8 +7,8 @@ module mfv_edge_reader
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_approach, motion_lower_bulk, motion_shift, motion_upper_bulk, control_force, control_keep
    use mfv_near_field, only: near_field_type
-   use mfv_reference_edge, only: edge_contact_type, new_edge_contact
-   use mfv_scene, only: scene_type, step_type
+   use mfv_reference_edge, only: edge_contact_type
+   use mfv_scene, only: last_with_target, scene_type, step_type
    use mfv_tolerances, only: rounding
    implicit none
    private
@@ -58,12 +58,12 @@ contains
 
       body = edge_body(reader)
       pair = scene%near_field()
-      edge = new_edge_contact(reader%real_value('body', body, 'normal_intensity'), reader%real_value('body', body, 'edge_length'), &
-                              pair%normal, pair%tangential)
+      edge = edge_contact_type(reader%real_value('body', body, 'normal_intensity'), &
+                               reader%real_value('body', body, 'edge_length'), pair%normal, pair%tangential)
    end function edge_of
 
    !> Convert intensities to forces. `normal`, `shear`: K_N and K_T of all rows of a group, not allocated if not given; `step`: its
-   !> controls, and `targets`, shape (motions, rows), its other loads; `key_of_normal`, `key_of_shear`: for messages.
+   !> controls, and `targets`, shape (motions, rows), its other loads.
    subroutine convert_intensities(reader, group, number, scene, normal, shear, step, targets, error)
       type(reader_type), intent(in) :: reader
       character(*), intent(in) :: group
@@ -165,8 +165,7 @@ contains
 
          steps = size(scene%steps)
          if (group == 'step') steps = number - 1
-         last = findloc(scene%steps(:steps)%control(motion) /= control_keep .and. scene%steps(:steps)%cycles == 0, .true., dim=1, &
-                        back=.true.)
+         last = last_with_target(scene%steps(:steps), motion)
       end function last_before
    end subroutine convert_intensities
 

@@ -7,8 +7,8 @@ module mfv_history_reader
    use mfv_kinds, only: wp
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, control_keep, control_force, &
                           control_displacement, controlled_key
-   use mfv_scene, only: scene_type, step_type
-   use mfv_step_reader, only: check_motion, last_pressing, read_steady_tolerance
+   use mfv_scene, only: last_with_target, scene_type, step_type
+   use mfv_step_reader, only: check_motion, read_steady_tolerance
    use mfv_strings, only: add_text, has_word, lower_case, string_type, to_text
    use mfv_table_file, only: read_named_table
    implicit none
@@ -193,7 +193,7 @@ contains
       force = targets(motion_approach, :)
       is_known = step%control(motion_approach) == control_force
       if (step%control(motion_approach) == control_keep) then
-         last = last_pressing(scene%steps)
+         last = last_with_target(scene%steps, motion_approach)
          if (last > 0) is_known = scene%steps(last)%control(motion_approach) == control_force
          if (last > 0) force = scene%steps(last)%target(motion_approach)
       end if

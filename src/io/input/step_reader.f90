@@ -7,11 +7,11 @@ module mfv_step_reader
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_upper_bulk, motion_interference, &
                           control_keep, control_force, control_displacement, controlled_key, &
                           first_control
-   use mfv_scene, only: scene_type, step_type
+   use mfv_scene, only: last_with_target, scene_type, step_type
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: check_held, check_motion, last_pressing, read_steady_tolerance, read_steps
+   public :: check_held, check_motion, read_steady_tolerance, read_steps
 
 contains
 
@@ -65,7 +65,7 @@ contains
 
       if (.not. reader%has('step', number, 'force_ratio')) return
       ! The cycles of this step are read later.
-      last = last_pressing(scene%steps(:number))
+      last = last_with_target(scene%steps(:number), motion_approach)
       if (scene%steps(number)%control(motion_shift) /= control_keep) then
          call reader%complain('step', number, 'force_ratio', 'tangential_force or shift is also given; prescribe only one '// &
                               'of them', error)
@@ -193,12 +193,5 @@ contains
       if (step%cycles < 2) call reader%complain(group, number, 'steady_tolerance', 'has no effect without cycles of 2 or more; '// &
                                                 'remove it', error)
    end subroutine read_steady_tolerance
-
-   !> The last step that prescribes a normal force or approach, 0 for none. A step with cycles ends at its initial loads.
-   pure integer function last_pressing(steps)
-      type(step_type), intent(in) :: steps(:)
-
-      last_pressing = findloc(steps%control(motion_approach) /= control_keep .and. steps%cycles == 0, .true., dim=1, back=.true.)
-   end function last_pressing
 
 end module mfv_step_reader

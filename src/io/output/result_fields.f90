@@ -11,7 +11,7 @@ module mfv_result_fields
    use mfv_compliance, only: coupling_names
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
-   use mfv_edge_fields, only: edge_field_type, edge_fields_of
+   use mfv_edge_fields, only: edge_field_type, edge_fields_of, edge_quantities
    use mfv_error_bar
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
@@ -601,32 +601,26 @@ call list%add('contact_right', simulation%contact%model%scene%x_of_arc(patches%r
       end function outermost
    end subroutine add_patches
 
-   !> Fields at the left and right edges of the patches, shape (2, patches); those that no patch has are omitted.
+   !> Fields at the left and right edges of the patches, shape (2, patches), named as observables; those that no patch has are
+   !> omitted.
    subroutine add_patch_edges(list, edges)
       type(list_type), intent(inout) :: list
       type(edge_field_type), intent(in) :: edges(:, :)
-      character(*), parameter :: side(2) = [character(5) :: 'left', 'right'], there = ' edge, as in /observables'
-      integer :: i
+      character(*), parameter :: side(2) = [character(5) :: 'left', 'right']
+      real(wp) :: values(size(edge_quantities), size(edges, 2))
+      integer :: i, j
 
       do i = 1, size(side)
-         call add('normal_intensity', edges(i, :)%normal, 'force/length^(5/2)', 'intensity K_N of the pressure')
-         call add('shear_intensity', edges(i, :)%shear, 'force/length^(3/2)', 'intensity K_T of the shear if stuck')
-         call add('slip_zone', edges(i, :)%slip_zone, 'length', 'width of the slip zone')
-         call add('asymptotic_slip_zone', edges(i, :)%asymptotic_slip_zone, 'length', 'width of the slip zone by K_N and K_T')
-         call add('edge_reach', edges(i, :)%reach, 'length', 'distance at which the pressure differs from K_N sqrt(s) by a tenth')
-         call add('edge_exponent', edges(i, :)%exponent, '1', 'exponent of the distance in the pressure')
-         call add('corner_intensity', edges(i, :)%corner, 'force/length^(3/2)', 'intensity of the pressure of a corner')
+         do j = 1, size(edges, 2)
+            values(:, j) = edges(i, j)%values()
+         end do
+         do j = 1, size(edge_quantities)
+            if (all(ieee_is_nan(values(j, :)))) cycle
+            associate (row => observables(observable_place(trim(side(i))//'_'//trim(edge_quantities(j)))))
+               call list%add(trim(row%name), values(j, :), along_patches, trim(row%unit), trim(row%meaning))
+            end associate
+         end do
       end do
-
-   contains
-
-      subroutine add(name, values, unit, meaning)
-         character(*), intent(in) :: name, unit, meaning
-         real(wp), intent(in) :: values(:)
-
-         if (all(ieee_is_nan(values))) return
-         call list%add(trim(side(i))//'_'//name, values, along_patches, unit, meaning//' at the '//trim(side(i))//there)
-      end subroutine add
    end subroutine add_patch_edges
 
    !> Forces and peak tractions of the patches; the forces add up to those of the contact.
