@@ -278,7 +278,7 @@ contains
 
    !> Length of the permanent stick zone of steady cycles on a straight load path, by superposition: the contact under the normal
    !> force (P1 + P2)/2 - |Q2 - Q1|/(2 mu), where |Q2 - Q1| > mu |P2 - P1| (Barber, Davies and Hills 2011; half-planes without
-   !> coupling, of any profiles). NaN for other bodies and load histories, where nothing would stick, and for more than most_patches.
+   !> coupling, of any profiles). NaN for other bodies and load histories, where nothing would stick, and above most_patches.
    function steady_stick_length(simulation, cycle) result(length)
       type(simulation_type), intent(in) :: simulation
       type(cycle_type), intent(in) :: cycle
