@@ -21,7 +21,7 @@ module mfv_contact
    use mfv_kept_state, only: kept_state_type
    use mfv_kinds, only: wp
    use mfv_observer, only: observer_type
-   use mfv_observables, only: observable_count, observables_of
+   use mfv_observables, only: observe, observed_type
    use mfv_result_fields, only: field_named, field_type, group_fields, result_attributes, result_groups
    use mfv_refinement, only: follow_patches, refine_at_edges
    use mfv_result_file, only: check_writable, resume_result, write_result
@@ -68,7 +68,7 @@ module mfv_contact
       type(string_type), allocatable :: paths(:)
       character(:), allocatable :: group
       type(field_type), allocatable :: fields(:)
-      real(wp), allocatable :: observed(:)
+      type(observed_type), allocatable :: observed
       type(string_type), allocatable :: warnings(:), attribute_names(:), attribute_texts(:)
    end type cache_type
 
@@ -360,7 +360,7 @@ contains
       logical :: exists
 
       if (self%is_unfinished() .and. self%checkpoint_path == '') return
-      call find_results(self)
+      call find_warnings(self)
       if (self%is_unfinished()) then
          call write_result(self%checkpoint_path, self%case, self%simulation, self%warnings, error, with_restart=.true., &
                            observed=self%observed)
@@ -380,7 +380,7 @@ contains
       real(wp), intent(in) :: seconds
       character(:), allocatable, intent(out) :: text
 
-      call find_results(self)
+      call find_warnings(self)
       call summarize(self%case, self%simulation, self%warnings, self%observed, seconds, text)
    end subroutine summarize_contact
 
@@ -774,28 +774,21 @@ contains
       texts => self%attribute_texts
    end subroutine attributes
 
-   !> Find the warnings, if they are not cached; this may take a search for the largest stress.
+   !> Find what a result needs and the cache has not: observables and warnings.
    subroutine find_warnings(self)
       class(contact_type), intent(inout) :: self
 
-      if (.not. allocated(self%warnings)) call validity_warnings(self%simulation, self%warnings)
-   end subroutine find_warnings
-
-   !> Find what a result needs and the cache has not: warnings and observables.
-   subroutine find_results(self)
-      class(contact_type), intent(inout) :: self
-
-      call find_warnings(self)
+      if (allocated(self%warnings)) return
       call find_observables(self)
-   end subroutine find_results
+      call validity_warnings(self%simulation, self%observed, self%warnings)
+   end subroutine find_warnings
 
    !> Find the observables, if they are not cached.
    subroutine find_observables(self)
       class(contact_type), intent(inout) :: self
 
       if (allocated(self%observed)) return
-      allocate (self%observed(observable_count))
-      call observables_of(self%simulation, self%observed)
+      allocate (self%observed, source=observe(self%simulation))
    end subroutine find_observables
 
    !> A body (body_lower, body_upper) under the tractions of the state steps/000N, N = `step`, or of the present state (0, the
@@ -875,7 +868,7 @@ contains
          call set_error(error, MFV_BAD_ARGUMENT, 'no path is given, and the case has no &output file')
          return
       end if
-      call find_results(self)
+      call find_warnings(self)
       call write_result(where_to, self%case, self%simulation, self%warnings, error, observed=self%observed)
    end subroutine write
 

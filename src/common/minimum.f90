@@ -40,7 +40,7 @@ contains
       real(wp), intent(inout) :: x(:)
       real(wp), intent(out) :: value
       integer, parameter :: most_iterations = 400
-      real(wp), parameter :: smallest = 1.0e-8_wp
+      real(wp), parameter :: smallest = 1.0e-5_wp
       type(objective_context_type), target :: context
       type(gsl_multimin_function) :: gsl_f
       type(c_ptr) :: solver, start, steps

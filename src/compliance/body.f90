@@ -21,6 +21,7 @@ module mfv_body
       procedure :: is_matrix
       procedure :: layer_at
       procedure :: strength_of
+      procedure :: strength_at
       procedure :: has_strength
       procedure :: make_compliance
    end type body_type
@@ -81,6 +82,14 @@ contains
       if (.not. self%elasticity%is_layered()) return
       if (layer <= size(self%elasticity%layer)) strength = self%elasticity%layer(layer)%yield_strength
    end function strength_of
+
+   !> Yield strength at a depth (its size counts) below the surface, length; force/length^2; 0: unknown.
+   pure real(wp) function strength_at(self, depth) result(strength)
+      class(body_type), intent(in) :: self
+      real(wp), intent(in) :: depth
+
+      strength = self%strength_of(self%layer_at(abs(depth)))
+   end function strength_at
 
    !> Whether a yield strength is known.
    pure logical function has_strength(self)

@@ -291,13 +291,15 @@ contains
       class(observer_type), intent(inout), target, optional :: observer
       type(relay_type) :: watch
       type(simulation_type) :: coarse
+      type(observed_type) :: observed
       logical :: other_zones
       integer :: i, before
 
       before = size(unresolved)
       other_zones = .false.
       allocate (values(observable_count, size(nodes)), allowances(observable_count, size(nodes)))
-      call observables_of(simulation, values(:, 1))
+      observed = observe(simulation)
+      values(:, 1) = observed%values
       allowances(:, 1) = interval_allowances(simulation, values(:, 1))
       if (present(observer)) watch%caller => observer
       watch%runs = size(nodes) - 1
@@ -310,7 +312,8 @@ contains
             estimate%message = 'on a mesh of '//to_text(nodes(i))//' nodes: '//status_outcome(coarse%outcome)
             return
          end if
-         call observables_of(coarse, values(:, i))
+         observed = observe(coarse)
+         values(:, i) = observed%values
          allowances(:, i) = interval_allowances(coarse, values(:, i))
          other_zones = other_zones .or. stick_zones(coarse) /= stick_zones(simulation)
          if (estimate%doubt == '') estimate%doubt = trim(difference_of_meshes(simulation, coarse))

@@ -18,8 +18,8 @@ module mfv_observables
    use mfv_zone_edges, only: outermost_edges, find_patches, find_zone_edges, largest_shear, patch_type, zone_edges_type
    implicit none
    private
-   public :: observable_count, observables, observable_place, observables_of, error_none, error_load, error_smooth, error_edges, &
-             error_stick, error_pressure, error_shear, error_local, error_place, error_edge_field
+   public :: observable_count, observables, observable_place, observed_type, observe, error_none, error_load, error_smooth, &
+             error_edges, error_stick, error_pressure, error_shear, error_local, error_place, error_edge_field
 
    !> How the discretisation error of an observable behaves: not estimated (counts, rows, and numbers with the relative errors of
    !> their factors); none where the load is prescribed; smooth; that of edges of the contact, of stick zones, of the peaks of
@@ -210,6 +210,16 @@ module mfv_observables
                                 row_type('steady_stick_length', 'length', error_edge_field, &
                                          'length that sticks in steady cycles on a straight load path, by superposition')]
 
+   !> What is read off a simulation: the observables, NaN if not available; and the extremes and the edges of all patches, of which
+   !> some are.
+   type :: observed_type
+      real(wp) :: values(observable_count)
+      type(load_extremes_type) :: extremes
+      type(edge_field_type), allocatable :: edges(:, :)
+   contains
+      procedure :: value => observed_value
+   end type observed_type
+
 contains
 
    !> Index of an observable; observable_count + 1 of other names.
@@ -221,18 +231,32 @@ contains
       end do
    end function observable_place
 
-   !> All observables at the present state of a simulation, with units; NaN if not available.
-   subroutine observables_of(simulation, values)
+   !> The observable of a name.
+   pure real(wp) function observed_value(self, name) result(value)
+      class(observed_type), intent(in) :: self
+      character(*), intent(in) :: name
+
+      value = self%values(observable_place(name))
+   end function observed_value
+
+   !> All observables at the present state of a simulation, with units.
+   type(observed_type) function observe(simulation) result(observed)
       type(simulation_type), intent(in) :: simulation
-      real(wp), intent(out) :: values(observable_count)
+
+      observed%values = ieee_value(1.0_wp, ieee_quiet_nan)
+      call simulation%find_extremes(observed%extremes)
+      call add_present(simulation, observed%extremes, observed%edges, observed%values)
+      call add_extremes(observed%extremes, observed%values)
+      call add_cycles(simulation, observed%values)
+   end function observe
+
+   !> Observables of the last step with cycles.
+   subroutine add_cycles(simulation, values)
+      type(simulation_type), intent(in) :: simulation
+      real(wp), intent(inout) :: values(:)
       type(contact_state_type) :: state
       type(zone_edges_type) :: loading
-      type(load_extremes_type) :: extremes
 
-      values = ieee_value(1.0_wp, ieee_quiet_nan)
-      call simulation%find_extremes(extremes)
-      call add_present(simulation, extremes, values)
-      call add_extremes(extremes, values)
       if (simulation%marks(mark_loading)%step == 0) return
       state = simulation%padded(simulation%marks(mark_loading))
       call find_zone_edges(simulation%contact%model, state, loading)
@@ -242,12 +266,14 @@ contains
          ! Not those of an earlier step, if the last step with cycles ended in its first one.
          if (cycle%step == simulation%marks(mark_loading)%step) call add_cycle(simulation, cycle, values)
       end associate
-   end subroutine observables_of
+   end subroutine add_cycles
 
-   !> Observables of the present state. `extremes`: of the load history, which may be those of this state.
-   subroutine add_present(simulation, extremes, values)
+   !> Observables of the present state. `extremes`: of the load history, which may be those of this state. `fields`: of the edges of
+   !> its patches.
+   subroutine add_present(simulation, extremes, fields, values)
       type(simulation_type), intent(in) :: simulation
       type(load_extremes_type), intent(in) :: extremes
+      type(edge_field_type), allocatable, intent(out) :: fields(:, :)
       real(wp), intent(inout) :: values(:)
       type(zone_edges_type) :: edges
       type(patch_type), allocatable :: patches(:)
@@ -276,7 +302,8 @@ contains
          end do
          call put(values, 'peak_shear', shear)
          call put(values, 'half_width_number', edges%half_width()*model%scene%curvature())
-         call add_edge_fields(simulation, patches, values)
+         fields = edge_fields_of(simulation, patches)
+         call add_edge_fields(fields, values)
          call add_tension(simulation, extremes, .false., 'lower', values)
          call add_tension(simulation, extremes, .true., 'upper', values)
          if (model%scene%wear%acts()) then
@@ -296,16 +323,13 @@ contains
    end subroutine add_present
 
    !> Fields at the outermost edges of the contact.
-   subroutine add_edge_fields(simulation, patches, values)
-      type(simulation_type), intent(in) :: simulation
-      type(patch_type), intent(in) :: patches(:)
+   subroutine add_edge_fields(edges, values)
+      type(edge_field_type), intent(in) :: edges(:, :)
       real(wp), intent(inout) :: values(:)
-      type(edge_field_type), allocatable :: edges(:, :)
 
-      if (size(patches) == 0) return
-      edges = edge_fields_of(simulation, patches)
+      if (size(edges, 2) == 0) return
       call put_edge('left', edges(1, 1))
-      call put_edge('right', edges(2, size(patches)))
+      call put_edge('right', edges(2, size(edges, 2)))
 
    contains
 

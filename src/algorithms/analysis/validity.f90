@@ -4,14 +4,14 @@ module mfv_validity
    use mfv_body, only: body_type
    use mfv_cycle, only: cycle_type
    use mfv_kinds, only: pi, wp
-   use mfv_load_extremes, only: most_rows
+   use mfv_load_extremes, only: load_extremes_type
    use mfv_motions, only: motion_approach, motion_shift, motion_rotation, control_displacement
    use mfv_near_field, only: near_field_type
    use mfv_node_status, only: in_contact
+   use mfv_observables, only: observed_type
    use mfv_resolution, only: find_unresolved, poorest_patch, unresolved_type
    use mfv_scene, only: most_of_datum, scene_type
-   use mfv_simulation, only: mark_of, mark_yield, simulation_type
-   use mfv_state_interior, only: find_largest_von_mises
+   use mfv_simulation, only: simulation_type
    use mfv_stress_search, only: largest_type
    use mfv_strings, only: add_text, string_type, to_text
    use mfv_surface_warnings, only: warn_of_surface
@@ -27,11 +27,12 @@ module mfv_validity
 
 contains
 
-   !> Warnings about a simulation: what its mesh does not resolve; contact at large angles, or beyond a datum; surfaces that
+   !> Warnings about a simulation, with what is observed in it: what its mesh does not resolve; contact at large angles, or beyond a datum; surfaces that
    !> end, are steep or are uncertain between points; yield (the largest von Mises stress by refinement); large rotations; wear of
    !> much at once; lost digits; an accuracy beyond that of the mesh.
-   subroutine validity_warnings(simulation, warnings)
+   subroutine validity_warnings(simulation, observed, warnings)
       type(simulation_type), intent(in) :: simulation
+      type(observed_type), intent(in) :: observed
       type(string_type), allocatable, intent(out) :: warnings(:)
       !> Largest residual without lost digits.
       real(wp), parameter :: good = 1.0e-8_wp
@@ -48,8 +49,8 @@ contains
          call check_accuracy(simulation, scene, warnings)
          call warn_of_surface(simulation, .false., scene%lower, largest_angle, warnings)
          call warn_of_surface(simulation, .true., scene%upper, largest_angle, warnings)
-         call check_yield(simulation, .false., scene%lower, warnings)
-         call check_yield(simulation, .true., scene%upper, warnings)
+         call check_yield(simulation, observed%extremes, .false., scene%lower, warnings)
+         call check_yield(simulation, observed%extremes, .true., scene%upper, warnings)
       end associate
       call find_unresolved(simulation, unresolved)
       do i = 1, size(unresolved)
@@ -297,51 +298,34 @@ contains
    end subroutine check_order
 
    !> The largest von Mises stress of the load history, at the ends of its load segments, in the states where it may be.
-   subroutine check_yield(simulation, upper, body, warnings)
+   subroutine check_yield(simulation, extremes, upper, body, warnings)
       type(simulation_type), intent(in) :: simulation
+      type(load_extremes_type), intent(in) :: extremes
       logical, intent(in) :: upper
       type(body_type), intent(in) :: body
       type(string_type), allocatable, intent(inout) :: warnings(:)
-      type(largest_type) :: largest, other
-      logical :: available
-      integer :: i, last, mark
+      type(largest_type) :: largest
+      integer :: mark
 
       if (.not. body%has_strength()) return
-      last = 0
-      do i = 1, most_rows
-         mark = mark_of(mark_yield, merge(2, 1, upper), i)
-         if (simulation%marks(mark)%step == 0) cycle
-         call find_largest_von_mises(simulation%contact%model, simulation%padded(simulation%marks(mark)), upper, other, available)
-         if (.not. available) return
-         if (last > 0 .and. other%value*strength_at(largest) <= largest%value*strength_at(other)) cycle
-         largest = other
-         last = mark
-         if (.not. ieee_is_finite(largest%value)) exit
-      end do
-      if (last == 0) return
+      call simulation%find_largest_of_history(upper, extremes, largest, mark)
+      if (mark == 0) return
       if (.not. ieee_is_finite(largest%value)) then
          call add_text(warnings, 'the '//merge('upper', 'lower', upper)//' body yields under any load: its stresses are '// &
                        'unbounded at a sharp corner; they are bounded with rounded edges')
-      else if (largest%value > strength_at(largest)) then
-         associate (where_it_is => simulation%marks(last))
+      else if (largest%value > body%strength_at(largest%y)) then
+         associate (where_it_is => simulation%marks(mark))
             call add_text(warnings, 'the largest von Mises stress of the '//merge('upper', 'lower', upper)//' body, '// &
                           to_text(largest%value, 4)//' '// &
                           trim(place_in_history(simulation, where_it_is%step, where_it_is%reversal))// &
-                          ', exceeds its yield_strength '//to_text(strength_at(largest))//trim(in_layer(largest))// &
+                          ', exceeds its yield_strength '//to_text(body%strength_at(largest%y))//trim(in_layer(largest))// &
                           ': stresses and tractions are not valid beyond yield')
          end associate
       end if
 
    contains
 
-      !> The yield strength of the layer in which a stress is, or of the body.
-      pure real(wp) function strength_at(stress)
-         type(largest_type), intent(in) :: stress
-
-         strength_at = body%strength_of(body%layer_at(abs(stress%y)))
-      end function strength_at
-
-      !> Which layer that is, in words, padded with blanks; blank without layers.
+      !> Which layer a stress is in, in words, padded with blanks; blank without layers.
       pure function in_layer(stress) result(words)
          type(largest_type), intent(in) :: stress
          character(len=40) :: words

@@ -25,7 +25,7 @@ module mfv_load_extremes
    private
    public :: extreme_type, load_extremes_type, slip_range_type, candidate_count, candidate_tension, candidate_von_mises, &
              most_rows, add_estimate, &
-             over_steps, over_cycle, over_rows
+             is_same_estimate, over_steps, over_cycle, over_rows
 
    !> Stretches: steps without cycles, a cycle, rows of &history.
    integer, parameter :: over_steps = 1, over_cycle = 2, over_rows = 3
@@ -191,11 +191,18 @@ contains
       integer, intent(out) :: place
 
       place = 0
-      if (.not. estimate >= 0.0_wp .or. any(largest >= 0.0_wp .and. abs(largest - estimate) <= same*estimate)) return
+      if (.not. estimate >= 0.0_wp .or. any(largest >= 0.0_wp .and. is_same_estimate(largest, estimate))) return
       if (.not. estimate > minval(largest)) return
       place = minloc(largest, dim=1)
       largest(place) = estimate
    end subroutine add_estimate
+
+   !> Whether two estimates may be of the same state.
+   elemental logical function is_same_estimate(one, other)
+      real(wp), intent(in) :: one, other
+
+      is_same_estimate = abs(one - other) <= same*other
+   end function is_same_estimate
 
    !> x of the largest value at the nodes: the middle of neighbouring nodes with the same value.
    pure real(wp) function place_of_largest(x, values) result(place)

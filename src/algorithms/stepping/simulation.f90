@@ -1,6 +1,6 @@
 !> A scene and its run through the load history: steps, reversals, the state at the end of each, and the outcome.
 module mfv_simulation
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan, ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only: int64, int8
    use mfv_checksum, only: add_to_checksum
    use mfv_contact_model, only: new_contact_model
@@ -14,9 +14,8 @@ module mfv_simulation
    use mfv_error_bar, only: error_estimate_type
    use mfv_frictionless, only: apply_directly
    use mfv_kinds, only: wp
-   use mfv_load_extremes, only: add_estimate, candidate_count, candidate_tension, candidate_von_mises, load_extremes_type, &
-                                most_rows, over_cycle, &
-                                over_rows, over_steps, slip_range_type
+   use mfv_load_extremes, only: add_estimate, candidate_count, candidate_tension, candidate_von_mises, is_same_estimate, &
+                                load_extremes_type, most_rows, over_cycle, over_rows, over_steps, slip_range_type
    use mfv_leap, only: apply_by_large_increments
    use mfv_load_summary, only: load_summary_type
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_wear, control_keep, &
@@ -56,6 +55,8 @@ module mfv_simulation
    integer, parameter :: mark_turn = mark_yield + 2*most_rows, mark_count = mark_turn
    !> Rows in which the largest von Mises stress of the whole load history is searched for.
    integer, parameter :: rows_of_yield = 3
+   !> An estimate is not smaller than this part of a stress that is among the largest.
+   real(wp), parameter :: least_estimate = 0.85_wp
 
    !> The state at the end of a step, or of one reversal of a step with cycles.
    type :: snapshot_type
@@ -180,6 +181,7 @@ module mfv_simulation
       procedure :: stretch
       procedure :: ends_with_cycle
       procedure :: find_extremes
+      procedure :: find_largest_of_history
    end type simulation_type
 
 contains
@@ -915,8 +917,6 @@ contains
       type(load_extremes_type), intent(inout) :: extremes
       type(largest_type) :: largest
       logical :: available, is_left(most_rows)
-      !> An estimate is not smaller than this part of a stress that is among the largest.
-      real(wp), parameter :: least = 0.85_wp
       integer :: i, number
 
       associate (found => extremes%searched(candidate), estimates => extremes%estimate(:, candidate))
@@ -928,7 +928,7 @@ contains
             if (found%row > 0) then
                if (ieee_is_nan(found%value)) exit
                ! The last state, if it is among these, has a value of its own among the observables, which must not be larger.
-               if (estimates(i) < least*found%value .and. extremes%row(i, candidate) /= extremes%last_row) cycle
+               if (estimates(i) < least_estimate*found%value .and. extremes%row(i, candidate) /= extremes%last_row) cycle
             end if
             call find_largest(self%padded(self%marks(first + i - 1)))
             if (.not. available) exit
@@ -981,10 +981,77 @@ contains
          end do
       end if
       do i = 1, size(candidate_von_mises)
-         call search(self, merge(mark_of(mark_last_cycle, i, 1), mark_of(mark_candidate, candidate_von_mises(i), 1), &
-                                 ends_with_cycle(self)), candidate_von_mises(i), extremes)
+         call search(self, first_of_von_mises(self, i), candidate_von_mises(i), extremes)
       end do
    end subroutine find_extremes
+
+   !> The first mark of the states in which find_extremes searches for the largest von Mises stress of a body.
+   pure integer function first_of_von_mises(self, body) result(mark)
+      class(simulation_type), intent(in) :: self
+      integer, intent(in) :: body
+
+      mark = mark_of(mark_candidate, candidate_von_mises(body), 1)
+      if (ends_with_cycle(self)) mark = mark_of(mark_last_cycle, body, 1)
+   end function first_of_von_mises
+
+   !> The largest von Mises stress of the lower or `upper` body over the whole load history, at the ends of its segments; of layers,
+   !> as a part of their yield strengths. `extremes`: of find_extremes; what is known of their states is not searched for again.
+   !> `mark`: of the state; 0 without any.
+   subroutine find_largest_of_history(self, upper, extremes, largest, mark)
+      class(simulation_type), intent(in) :: self
+      logical, intent(in) :: upper
+      type(load_extremes_type), intent(in) :: extremes
+      type(largest_type), intent(out) :: largest
+      integer, intent(out) :: mark
+      type(largest_type) :: other
+      logical :: available
+      integer :: i, body, found, next
+
+      body = merge(2, 1, upper)
+      mark = 0
+      associate (known => extremes%searched(candidate_von_mises(body)), rows => extremes%row(:, candidate_von_mises(body)), &
+                 estimates => extremes%estimate(:, candidate_von_mises(body)))
+         if (known%row > 0) then
+            largest = largest_type(known%value, known%x, known%y)
+            found = findloc(rows, known%row, dim=1)
+            mark = first_of_von_mises(self, body) + found - 1
+            ! The first one of equal states.
+            i = findloc(is_same_estimate(self%yield_estimate(:, body), estimates(found)), .true., dim=1)
+            if (i > 0) mark = mark_of(mark_yield, body, i)
+         end if
+         do i = 1, rows_of_yield
+            next = mark_of(mark_yield, body, i)
+            if (self%marks(next)%step == 0) cycle
+            if (mark > 0) then
+               if (.not. ieee_is_finite(largest%value)) exit
+               if (any(rows > 0 .and. is_same_estimate(estimates, self%yield_estimate(i, body)))) cycle
+               if (self%yield_estimate(i, body) < least_estimate*largest%value) cycle
+            end if
+            call find_largest_von_mises(self%contact%model, self%padded(self%marks(next)), upper, other, available)
+            if (.not. available) exit
+            if (mark > 0) then
+               if (other%value*strength_at(largest) <= largest%value*strength_at(other)) cycle
+            end if
+            largest = other
+            mark = next
+         end do
+      end associate
+
+   contains
+
+      !> The yield strength where a stress is.
+      pure real(wp) function strength_at(stress)
+         type(largest_type), intent(in) :: stress
+
+         associate (scene => self%contact%model%scene)
+            if (upper) then
+               strength_at = scene%upper%strength_at(stress%y)
+            else
+               strength_at = scene%lower%strength_at(stress%y)
+            end if
+         end associate
+      end function strength_at
+   end subroutine find_largest_of_history
 
    !> Largest change of a traction since the state `before` on the same mesh, relative to the largest traction so far.
    pure real(wp) function change_since(self, before)

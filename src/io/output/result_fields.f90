@@ -20,7 +20,7 @@ module mfv_result_fields
    use mfv_motions, only: motions, motion_count => user_motions, motion_approach, motion_shift, motion_rotation, bulk_motions
    use mfv_near_field, only: near_field_type
    use mfv_node_status, only: event_names, in_contact, node_status_names
-   use mfv_observables, only: observable_count, observable_place, observables, observables_of
+   use mfv_observables, only: observable_count, observable_place, observables, observe, observed_type
    use mfv_resolution, only: find_unresolved_observables
    use mfv_scene, only: algorithm_names, stepping_leap, stepping_names
    use mfv_simulation, only: history_none, mark_cycle_start, mark_loading, mark_return, mark_reversal, &
@@ -116,14 +116,16 @@ contains
    end function padded_step_group
 
    !> The fields of one group; none for an unknown group. The tractions at instants of a cycle (moments/loading and so on) are not
-   !> in result files and result_groups. `observed`: the observables, if they are known.
+   !> in result files and result_groups. `observed`: what is read off the simulation, if it
+   !> is known.
    subroutine group_fields(case, simulation, group, fields, observed)
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
       character(*), intent(in) :: group
       type(field_type), allocatable, intent(out) :: fields(:)
-      real(wp), intent(in), optional :: observed(:)
+      type(observed_type), intent(in), optional :: observed
       type(list_type) :: list
+      type(observed_type), allocatable :: seen
       integer :: number, code, i
 
       list%length_unit = case%length_unit
@@ -143,9 +145,14 @@ contains
       case ('certificate')
          call add_certificate(list, simulation)
       case ('observables')
-         call add_observables(list, simulation, observed)
+         if (present(observed)) then
+            call add_observables(list, observed%values)
+         else
+            allocate (seen, source=observe(simulation))
+            call add_observables(list, seen%values)
+         end if
       case ('patches')
-         call add_patches(list, simulation)
+         call add_patches(list, simulation, observed)
       case ('cycles')
          if (simulation%cycle_count > 0) call add_cycles(list, simulation)
       case ('reference')
@@ -539,18 +546,11 @@ contains
    end subroutine add_edges
 
    !> Observables of the load history, where defined.
-   subroutine add_observables(list, simulation, observed)
+   subroutine add_observables(list, values)
       type(list_type), intent(inout) :: list
-      type(simulation_type), intent(in) :: simulation
-      real(wp), intent(in), optional :: observed(:)
-      real(wp) :: values(observable_count)
+      real(wp), intent(in) :: values(:)
       integer :: i
 
-      if (present(observed)) then
-         values = observed
-      else
-         call observables_of(simulation, values)
-      end if
       do i = 1, observable_count
          if (ieee_is_nan(values(i))) cycle
          associate (row => observables(i))
@@ -560,9 +560,10 @@ contains
    end subroutine add_observables
 
    !> The contact patches of the present state, from left to right; none without contact.
-   subroutine add_patches(list, simulation)
+   subroutine add_patches(list, simulation, observed)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
+      type(observed_type), intent(in), optional :: observed
       integer, parameter :: along = along_patches
       type(patch_type), allocatable :: patches(:)
       integer :: i
@@ -576,7 +577,11 @@ contains
 call list%add('contact_right', simulation%contact%model%scene%x_of_arc(patches%right), along, 'length', 'right edge'//between_nodes)
       call list%add('contact_length', patches%length(), along, 'length', 'length, from its edges between nodes')
       call add_patch_loads(list, simulation, patches)
-      call add_patch_edges(list, edge_fields_of(simulation, patches))
+      if (present(observed)) then
+         call add_patch_edges(list, observed%edges)
+      else
+         call add_patch_edges(list, edge_fields_of(simulation, patches))
+      end if
       if (.not. simulation%contact%model%tangential) return
       call list%add('stick_zones', [(size(patches(i)%stick), i=1, size(patches))], along, 'number of stick zones in the '// &
                     'patch'//narrow)

@@ -7,7 +7,7 @@ module mfv_result_file
    use mfv_hdf5_reader, only: close_read, has, open_to_read, read_text_attribute
    use mfv_hdf5_restart, only: read_restart, restart_fields, restart_group
    use mfv_hdf5_writer
-   use mfv_kinds, only: wp
+   use mfv_observables, only: observed_type
    use mfv_result_fields
    use mfv_simulation, only: simulation_type
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
@@ -83,7 +83,7 @@ contains
       type(string_type), intent(in) :: warnings(:)
       type(error_type), allocatable, intent(out) :: error
       logical, intent(in), optional :: with_restart
-      real(wp), intent(in), optional :: observed(:)
+      type(observed_type), intent(in), optional :: observed
       type(writer_type) :: writer
       type(string_type), allocatable :: names(:), texts(:)
       integer :: i
@@ -106,7 +106,7 @@ contains
       type(writer_type), intent(inout) :: writer
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
-      real(wp), intent(in), optional :: observed(:)
+      type(observed_type), intent(in), optional :: observed
       logical, intent(in), optional :: with_restart
       type(string_type), allocatable :: groups(:)
       type(field_type), allocatable :: fields(:), scales(:)

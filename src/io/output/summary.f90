@@ -7,7 +7,7 @@ module mfv_summary
    use mfv_kinds, only: pi, wp
    use mfv_load_extremes, only: over_rows, over_steps
    use mfv_motions, only: motions, motion_count => user_motions, motion_rotation, bulk_motions
-   use mfv_observables, only: observable_place
+   use mfv_observables, only: observable_place, observed_type
    use mfv_result_fields, only: field_named, field_type, group_fields
    use mfv_simulation, only: simulation_type
    use mfv_status, only: status_outcome
@@ -27,7 +27,8 @@ contains
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
       type(string_type), intent(in) :: warnings(:)
-      real(wp), intent(in) :: observed(:), seconds
+      type(observed_type), intent(in) :: observed
+      real(wp), intent(in) :: seconds
       character(:), allocatable, intent(out) :: text
       type(field_type), allocatable :: fields(:), seen(:)
       character(:), allocatable :: words
@@ -89,7 +90,7 @@ contains
    subroutine add_contact(text, fields, observed, model)
       character(:), allocatable, intent(inout) :: text
       type(field_type), intent(in) :: fields(:)
-      real(wp), intent(in) :: observed(:)
+      type(observed_type), intent(in) :: observed
       type(contact_model_type), intent(in) :: model
       character(:), allocatable :: span
 
@@ -108,14 +109,14 @@ contains
 
    !> The angles of a contact of one patch from the origin of x.
    pure function angles(observed, model) result(text)
-      real(wp), intent(in) :: observed(:)
+      type(observed_type), intent(in) :: observed
       type(contact_model_type), intent(in) :: model
       character(len=60) :: text
       real(wp), parameter :: degrees = 180.0_wp/pi
       real(wp) :: half, middle
 
-      half = observed(observable_place('contact_half_width'))/model%scene%arc_radius()
-      middle = observed(observable_place('contact_centre'))/model%scene%arc_radius()
+      half = observed%value('contact_half_width')/model%scene%arc_radius()
+      middle = observed%value('contact_centre')/model%scene%arc_radius()
       text = 'all around'
       if (half < pi*(1.0_wp - visible)) text = 'from '//to_text((middle - half)*degrees, 4)//' to '// &
                                                to_text((middle + half)*degrees, 4)//' degrees'
