@@ -101,6 +101,34 @@ def test_no_steady_zone_where_loads_turn_on_the_way() -> None:
     assert "steady_stick_length" not in disk and disk.permanent_stick_length > 0.0
 
 
+def test_permanent_stick_zone_at_every_turning_point() -> None:
+    """Rows of a period in any order: what sticks at all of them is what sticks at the two extremes, a root(1 - Q/(mu P)), inside that of the rows
+    between."""
+    for rows in ((1.0, -1.0, 0.3, -0.2), (0.1, 1.0, -1.0, -0.1), (1.0, 0.2, -1.0, -0.2)):
+        path = History(normal_force=[P] * 4, tangential_force=[Q * row for row in rows], cycles=3, period=4)
+        scene = Scene(
+            PLANE, CYLINDER, friction=Friction.coulomb(MU), mesh=Mesh(nodes=401, gap="parabolic"), steps=[Step(normal_force=P)], history=path
+        )
+        seen = mfv.run(scene).observables
+        assert seen.permanent_stick_length == pytest.approx(2.0 * A * math.sqrt(1.0 - Q / (MU * P)), rel=2e-3)
+
+
+@pytest.mark.parametrize("coupled", [False, True])
+def test_every_cycle_has_its_edges(coupled: bool) -> None:
+    """/cycles at the reversal and at the end: K_T of the change since the turning point before; the last row is what the observables say."""
+    upper = Body.disk(1.0, **ELASTIC) if coupled else CYLINDER
+    seen = observed(Step(normal_force=P), Step(tangential_force=Q), Step(tangential_force=-Q, cycles=3), upper=upper)
+    cycles, end = seen.cycles, seen.observables
+    error = 0.02 if coupled else 1e-5
+    for side in ("left", "right"):
+        assert list(cycles[f"{side}_shear_intensity_reversal"]) == pytest.approx([-2.0 * K_T] * 3, rel=error)
+        assert list(cycles[f"{side}_shear_intensity_return"]) == pytest.approx([2.0 * K_T] * 3, rel=error)
+        assert list(cycles[f"{side}_normal_intensity_reversal"]) == pytest.approx([K_N] * 3, rel=max(error, 1e-4))
+        for name in ("normal_intensity", "shear_intensity", "slip_zone", "asymptotic_slip_zone"):
+            assert cycles[f"{side}_{name}_return"][-1] == pytest.approx(end[f"{side}_{name}"], rel=1e-9)
+    assert "left_corner_intensity_return" not in cycles
+
+
 def test_corners() -> None:
     """P/(pi sqrt(2 b)) at the ends of a punch; sliding with coupling (Johnson 1985, section 2.5, exponent -1/2 -+ l, tan(pi l) = beta mu)."""
     b = 0.05

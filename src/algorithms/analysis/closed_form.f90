@@ -17,7 +17,7 @@ module mfv_closed_form
    use mfv_tolerances, only: significant
    implicit none
    private
-   public :: closed_form_type, closed_form_of, alike
+   public :: closed_form_type, closed_form_of
 
    type :: closed_form_type
       !> Source of each; empty without a closed form.
@@ -47,7 +47,7 @@ contains
       associate (model => simulation%contact%model, scene => simulation%contact%model%scene, &
                  force => simulation%contact%state%fields%force(motion_approach))
          if (.not. (force > 0.0_wp .and. scene%modulus() > 0.0_wp) .or. scene%is_layered()) return
-         if (model%compliance%elastic_block(block_wt) .and. model%tangential .and. .not. alike(scene)) return
+         if (model%compliance%elastic_block(block_wt) .and. model%tangential .and. .not. scene%is_similar()) return
          if (any(simulation%load_summary%controlled(motion_rotation + 1:))) return
          if (any(abs(model%worn) > 0.0_wp)) return
          if (scene%mesh%period > 0.0_wp) then
@@ -115,7 +115,7 @@ contains
 
       associate (contact => simulation%contact, model => simulation%contact%model)
          is_carter = model%scene%friction%is_coulomb() .and. model%tangential .and. contact%rolling%is_steady(half_width) .and. &
-                     (alike(model%scene) .or. .not. model%compliance%elastic_block(block_up)) .and. &
+                     (model%scene%is_similar() .or. .not. model%compliance%elastic_block(block_up)) .and. &
                      any(contact%state%status == node_stick)
       end associate
    end function is_carter
@@ -168,17 +168,6 @@ contains
                  (scene%upper%circular() .or. scene%upper%is_straight()) .and. scene%curvature() > 0.0_wp
    end function is_hertz
 
-   !> Whether the near field of both bodies together has no coupling: they are of one material. Different shapes couple by the
-   !> order of a/R only.
-   pure logical function alike(scene)
-      type(scene_type), intent(in) :: scene
-      real(wp), parameter :: none = 1.0e-12_wp
-      type(near_field_type) :: pair
-
-      pair = scene%near_field()
-      alike = pair%coupling_ratio() < none
-   end function alike
-
    !> Monotonic pressing with friction from the start and Goodman's coupling.
    logical function is_spence(simulation)
       type(simulation_type), intent(in) :: simulation
@@ -188,7 +177,7 @@ contains
       associate (model => simulation%contact%model)
          is_spence = (is_hertz(model%scene) .or. model%scene%upper%has_sharp_ends()) .and. &
                      model%compliance%elastic_block(block_up) .and. &
-                     model%scene%friction%is_coulomb() .and. model%tangential .and. .not. alike(model%scene)
+                     model%scene%friction%is_coulomb() .and. model%tangential .and. .not. model%scene%is_similar()
       end associate
       is_spence = is_spence .and. simulation%load_summary%pressed_harder .and. .not. abs(pair%mixed) > 0.0_wp
    end function is_spence
@@ -225,7 +214,7 @@ contains
       associate (model => simulation%contact%model, summary => simulation%load_summary)
          is_mindlin = .not. form%indenter%is_flat() .and. model%scene%friction%is_coulomb() .and. model%tangential .and. &
                       summary%pressed_then_sheared .and. summary%sheared .and. &
-                      (.not. summary%friction_in_press .or. alike(model%scene) .or. &
+                      (.not. summary%friction_in_press .or. model%scene%is_similar() .or. &
                        .not. model%compliance%elastic_block(block_up)) .and. &
                       (simulation%keep_states == states_reversals .or. &
                        simulation%keep_states == states_steps .and. .not. summary%cycled)

@@ -4,7 +4,6 @@ module mfv_discretisation_error
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use mfv_body, only: body_type
    use mfv_circle, only: kernel_fourier
-   use mfv_closed_form, only: alike
    use mfv_compliance, only: block_up, block_wt
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
@@ -817,7 +816,7 @@ contains
 
       associate (scene => model%scene)
          pressing_shears = model%compliance%has_block(block_up) .and. &
-                           (.not. alike(scene) .or. (scene%lower%circular() .and. scene%upper%circular()))
+                           (.not. scene%is_similar() .or. (scene%lower%circular() .and. scene%upper%circular()))
       end associate
    end function pressing_shears
 

@@ -5,14 +5,14 @@ module mfv_observables
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
-   use mfv_edge_fields, only: edge_field_type, edge_fields_of, edge_quantities, permanent_stick_length, &
-                              steady_stick_length
+   use mfv_edge_fields, only: edge_field_type, edge_quantities
    use mfv_kinds, only: pi, wp
    use mfv_load_extremes, only: candidate_tension, candidate_von_mises, extreme_type, load_extremes_type
    use mfv_motions, only: motions, motion_count => user_motions, motion_approach, motion_shift
    use mfv_near_field, only: near_field_type
    use mfv_simulation, only: mark_loading, simulation_type
    use mfv_state_interior, only: find_largest_tension
+   use mfv_steady_stick, only: steady_stick_length
    use mfv_stress_search, only: largest_type
    use mfv_tolerances, only: significant
    use mfv_zone_edges, only: outermost_edges, find_patches, find_zone_edges, largest_shear, patch_type, zone_edges_type
@@ -206,7 +206,7 @@ module mfv_observables
                                 row_type('right_corner_intensity', 'force/length^(3/2)', error_edge_field, &
                                          'intensity K of the pressure K/sqrt(s) of a corner at the right end'), &
                                 row_type('permanent_stick_length', 'length', error_stick, &
-                                         'length that sticks at both ends of the last cycle'), &
+                                         'length that sticks at all turning points of the last cycle'), &
                                 row_type('steady_stick_length', 'length', error_edge_field, &
                                          'length that sticks in steady cycles on a straight load path, by superposition')]
 
@@ -302,7 +302,7 @@ contains
          end do
          call put(values, 'peak_shear', shear)
          call put(values, 'half_width_number', edges%half_width()*model%scene%curvature())
-         fields = edge_fields_of(simulation, patches)
+         fields = simulation%edge_fields(patches)
          call add_edge_fields(fields, values)
          call add_tension(simulation, extremes, .false., 'lower', values)
          call add_tension(simulation, extremes, .true., 'upper', values)
@@ -420,7 +420,7 @@ contains
       call put(values, 'tangential_stiffness', cycle%return%stiffness_on_leaving)
       call put(values, 'secant_stiffness', cycle%secant_stiffness())
       call put(values, 'loss_factor', cycle%loss_factor())
-      call put(values, 'permanent_stick_length', permanent_stick_length(cycle))
+      call put(values, 'permanent_stick_length', cycle%permanent_stick_length())
       call put(values, 'steady_stick_length', steady_stick_length(simulation, cycle))
       call add_turning_point(cycle%reversal%edges, 'reversal', values)
       call add_turning_point(cycle%return%edges, 'return', values)

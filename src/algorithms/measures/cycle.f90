@@ -1,8 +1,9 @@
 !> A cycle of the load history: its three turning points, and what is measured between them.
 module mfv_cycle
-   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_quiet_nan, ieee_value
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
+   use mfv_edge_fields, only: edge_field_type
    use mfv_kinds, only: pi, wp
    use mfv_load_extremes, only: load_extremes_type
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_interference
@@ -19,6 +20,8 @@ module mfv_cycle
       real(wp) :: force(motion_count) = 0.0_wp, motion(motion_count) = 0.0_wp
       real(wp) :: dissipation = 0.0_wp
       type(zone_edges_type) :: edges
+      !> The outermost edges, left and right; not at the start.
+      type(edge_field_type) :: left, right
       !> Record of the slip zones up to here.
       type(slip_record_type) :: slip
       !> Tangential stiffness, force/length^2: tangential force over shift on the first increment after the preceding turning
@@ -42,6 +45,8 @@ module mfv_cycle
       !> Extremes at the turning points, without the start: of forces and motions, and of what they cause.
       real(wp), dimension(motion_count) :: lowest_force = 0.0_wp, highest_force = 0.0_wp, lowest_motion = 0.0_wp, &
                                            highest_motion = 0.0_wp
+      !> Left and right edge, arc lengths, of what sticks at all these turning points; NaN with several patches or stick zones.
+      real(wp) :: stick(2) = 0.0_wp
       type(load_extremes_type) :: extremes
       !> Cycles of the block of wear that begins with this one; area worn off the profiles before it, length^2.
       integer :: block = 1
@@ -66,6 +71,7 @@ module mfv_cycle
       procedure, private :: only_sheared
       procedure :: secant_stiffness
       procedure :: loss_factor
+      procedure :: permanent_stick_length
    end type cycle_type
 
 contains
@@ -102,19 +108,38 @@ contains
       class(cycle_type), intent(inout) :: self
       type(turning_point_type), intent(in) :: point
       logical, intent(in) :: is_first
+      real(wp) :: zone(2)
 
       if (is_first) then
          self%lowest_force = point%force
          self%highest_force = point%force
          self%lowest_motion = point%motion
          self%highest_motion = point%motion
+         self%stick = stick_zone_of(point%edges)
          return
       end if
       self%lowest_force = min(self%lowest_force, point%force)
       self%highest_force = max(self%highest_force, point%force)
       self%lowest_motion = min(self%lowest_motion, point%motion)
       self%highest_motion = max(self%highest_motion, point%motion)
+      zone = stick_zone_of(point%edges)
+      if (any(ieee_is_nan([zone, self%stick]))) then
+         self%stick = ieee_value(1.0_wp, ieee_quiet_nan)
+      else
+         self%stick = [max(self%stick(1), zone(1)), min(self%stick(2), zone(2))]
+      end if
    end subroutine add_point
+
+   !> Left and right edge of the only stick zone of the only patch, the same place if nothing sticks; NaN with several.
+   pure function stick_zone_of(edges) result(zone)
+      type(zone_edges_type), intent(in) :: edges
+      real(wp) :: zone(2)
+
+      zone = 0.0_wp
+      if (edges%stick) zone = [edges%stick_left, edges%stick_right]
+      if (edges%patches /= 1 .or. abs(zone(2) - zone(1) - edges%stick_length) > certified*edges%contact_length) &
+         zone = ieee_value(1.0_wp, ieee_quiet_nan)
+   end function stick_zone_of
 
    !> Whether a turning point is farther from the start of the cycle, the return of the one before, than its reversal so far. Of
    !> points that are equally far, but for round-off, the first counts.
@@ -249,6 +274,14 @@ contains
          loss_factor = ieee_value(1.0_wp, ieee_quiet_nan)
       loss_factor = loss_factor/(pi*self%force_amplitude()*self%shift_amplitude())
    end function loss_factor
+
+   !> Length of the part that sticks at all turning points of the cycle; NaN with several patches or stick zones.
+   elemental real(wp) function permanent_stick_length(self) result(length)
+      class(cycle_type), intent(in) :: self
+
+      length = self%stick(2) - self%stick(1)
+      if (length < 0.0_wp) length = 0.0_wp
+   end function permanent_stick_length
 
    !> Append a cycle to the first `number` entries of a list, which doubles when full. `last_only`: it replaces them.
    subroutine append_cycle(cycles, number, cycle, last_only)

@@ -150,6 +150,7 @@ module mfv_scene
       procedure :: tangential
       procedure :: moves
       procedure :: near_field
+      procedure :: is_similar
       procedure :: modulus
       procedure :: near_field_over
       procedure :: is_layered
@@ -324,6 +325,16 @@ contains
 
       both = pair_of(self%lower%elasticity%near_field(), self%upper%elasticity%near_field())
    end function near_field
+
+   !> Whether the bodies are elastically similar: their near field has no coupling. Different shapes couple by the order of a/R only.
+   pure logical function is_similar(self)
+      class(scene_type), intent(in) :: self
+      real(wp), parameter :: none = 1.0e-12_wp
+      type(near_field_type) :: both
+
+      both = self%near_field()
+      is_similar = both%coupling_ratio() < none
+   end function is_similar
 
    !> Contact modulus of both bodies, force/length^2: 1/A of mfv_near_field, the sum of those of the elastic bodies, (kappa +
    !> 1)/(4 G) if isotropic (A in dissertation eq. 6.1, corrected for a misprint). Zero if a body has no material.

@@ -7,6 +7,7 @@ module mfv_simulation
    use mfv_contact_state, only: contact_state_type
    use mfv_contact_system, only: initial_loads, load_type
    use mfv_cycle, only: append_cycle, cycle_type, new_turning_point, turning_point_type
+   use mfv_edge_fields, only: edge_field_type, edge_fields_of, undefined_edge
    use mfv_derivative_increments, only: differentiate_end
    use mfv_error, only: error_type
    use mfv_contact_path, only: contact_path_type, new_contact_path, path_position_type, saved_path_type, segment_type
@@ -27,6 +28,7 @@ module mfv_simulation
    use mfv_state_interior, only: find_largest_tension, find_largest_von_mises, surface_stress_at
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, MFV_INTERRUPTED, MFV_NO_CONTINUATION, MFV_SEPARATED
    use mfv_stress_search, only: largest_type
+   use mfv_zone_edges, only: find_patches, patch_type
    use mfv_wear_block, only: find_wear_block, wear_block_type, widened, work_of_wear
    use mfv_strings, only: to_text
    implicit none
@@ -180,6 +182,7 @@ module mfv_simulation
       procedure :: padded
       procedure :: stretch
       procedure :: ends_with_cycle
+      procedure :: edge_fields
       procedure :: find_extremes
       procedure :: find_largest_of_history
    end type simulation_type
@@ -806,6 +809,7 @@ contains
          is_farthest = mod(leg, turns) == 1
          if (.not. is_farthest) is_farthest = cycle%is_farther(point)
          if (.not. is_farthest) return
+         call add_edge_fields(self, point)
          cycle%reversal = point
          call set_mark(self, mark_pending, leg)
          return
@@ -818,6 +822,7 @@ contains
       cycle%start = cycle%return
       self%marks(mark_cycle_start) = self%marks(mark_return)
       self%marks(mark_reversal) = self%marks(mark_pending)
+      call add_edge_fields(self, point)
       cycle%return = point
       before = self%padded(self%marks(mark_cycle_start))
       cycle%change = change_since(self, before)
@@ -827,6 +832,35 @@ contains
       call complete_extremes(self, cycle)
       call append_cycle(self%cycles, self%cycle_count, cycle, self%keep_history == history_none)
    end subroutine complete_leg
+
+   !> The left and right edge of the patches of the present state, shape (2, patches).
+   function edge_fields(self, patches) result(edges)
+      class(simulation_type), intent(in) :: self
+      type(patch_type), intent(in) :: patches(:)
+      type(edge_field_type) :: edges(2, size(patches))
+      type(contact_state_type), allocatable :: before
+
+      if (self%marks(mark_turn)%step > 0) allocate (before, source=self%padded(self%marks(mark_turn)))
+      associate (contact => self%contact)
+         edges = edge_fields_of(contact%model, contact%system, contact%state, self%load, patches, before)
+      end associate
+   end function edge_fields
+
+   !> Add the outermost edges of the present state to its turning point.
+   subroutine add_edge_fields(self, point)
+      class(simulation_type), intent(in) :: self
+      type(turning_point_type), intent(inout) :: point
+      type(patch_type), allocatable :: patches(:)
+      type(edge_field_type), allocatable :: edges(:, :)
+
+      call find_patches(self%contact%model, self%contact%state, patches)
+      point%left = undefined_edge()
+      point%right = point%left
+      if (size(patches) == 0) return
+      edges = self%edge_fields(patches)
+      point%left = edges(1, 1)
+      point%right = edges(2, size(patches))
+   end subroutine add_edge_fields
 
    !> Note what the state at the end of the present segment adds to the extremes of its stretch.
    subroutine note_extremes(self, step)

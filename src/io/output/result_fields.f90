@@ -10,8 +10,8 @@ module mfv_result_fields
    use mfv_closed_form, only: closed_form_of, closed_form_type
    use mfv_compliance, only: coupling_names
    use mfv_contact_state, only: contact_state_type
-   use mfv_cycle, only: cycle_type
-   use mfv_edge_fields, only: edge_field_type, edge_fields_of, edge_quantities
+   use mfv_cycle, only: cycle_type, turning_point_type
+   use mfv_edge_fields, only: edge_field_type, edge_quantities
    use mfv_error_bar
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
@@ -580,7 +580,7 @@ call list%add('contact_right', simulation%contact%model%scene%x_of_arc(patches%r
       if (present(observed)) then
          call add_patch_edges(list, observed%edges)
       else
-         call add_patch_edges(list, edge_fields_of(simulation, patches))
+         call add_patch_edges(list, simulation%edge_fields(patches))
       end if
       if (.not. simulation%contact%model%tangential) return
       call list%add('stick_zones', [(size(patches(i)%stick), i=1, size(patches))], along, 'number of stick zones in the '// &
@@ -709,12 +709,47 @@ call list%add('contact_right', simulation%contact%model%scene%x_of_arc(patches%r
                     'reversal, along the surface from the origin')
       call list%add('contact_centre_return', c%return%edges%centre(), along, 'length', 'middle of the contact at the end of '// &
                     'the cycle, along the surface from the origin')
+      call add_cycle_edges(list, c%reversal, '_reversal', 'the reversal')
+      call add_cycle_edges(list, c%return, '_return', 'the end of the cycle')
       if (simulation%marks(mark_cycle_start)%step == 0 .or. simulation%marks(mark_return)%reversal == 0) return
       before = simulation%padded(simulation%marks(mark_cycle_start))
       after = simulation%padded(simulation%marks(mark_return))
       call list%add('friction_work', after%friction_work - before%friction_work, along_nodes, 'force/length', 'energy '// &
                     'dissipated in the last cycle per unit of surface')
    end subroutine add_cycles
+
+   !> The outermost edges at turning points, with the names of the observables and a suffix, as far as defined; `moment`: what these
+   !> are.
+   subroutine add_cycle_edges(list, points, suffix, moment)
+      type(list_type), intent(inout) :: list
+      type(turning_point_type), intent(in) :: points(:)
+      character(*), intent(in) :: suffix, moment
+
+      call add('left', points%left)
+      call add('right', points%right)
+
+   contains
+
+      subroutine add(side, edges)
+         character(*), intent(in) :: side
+         type(edge_field_type), intent(in) :: edges(:)
+         character(*), parameter :: of_state(2) = [character(13) :: 'edge_reach', 'edge_exponent']
+         real(wp) :: values(size(edge_quantities), size(edges))
+         character(:), allocatable :: meaning
+         integer :: i, place
+
+         values = reshape([(edges(i)%values(), i=1, size(edges))], shape(values))
+         do i = 1, size(edge_quantities)
+            if (all(ieee_is_nan(values(i, :))) .or. any(edge_quantities(i) == of_state)) cycle
+            associate (row => observables(observable_place(side//'_'//trim(edge_quantities(i)))))
+               meaning = trim(row%meaning)
+               place = index(meaning, ' at the end')
+               if (place > 0) meaning = meaning(:place - 1)//meaning(place + len(' at the end'):)
+               call list%add(trim(row%name)//suffix, values(i, :), along_cycles, trim(row%unit), 'at '//moment//': '//meaning)
+            end associate
+         end do
+      end subroutine add
+   end subroutine add_cycle_edges
 
    !> Extremes over the cycles: names, units and meanings are those of the observables.
    subroutine add_cycle_extremes(list, c)
