@@ -326,7 +326,8 @@ contains
       both = pair_of(self%lower%elasticity%near_field(), self%upper%elasticity%near_field())
    end function near_field
 
-   !> Whether the bodies are elastically similar: their near field has no coupling. Different shapes couple by the order of a/R only.
+   !> Whether the bodies are elastically similar: their near field has no coupling. Different shapes couple by the order of a/R
+   !> only.
    pure logical function is_similar(self)
       class(scene_type), intent(in) :: self
       real(wp), parameter :: none = 1.0e-12_wp
