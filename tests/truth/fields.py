@@ -40,8 +40,7 @@ ODD = {
     "patch_shift_loading", "patch_shift_reversal", "patch_shift_return", "shift_drift", "rotation_drift",
     "lower_tension_x", "upper_tension_x", "contact_edge", "stick_edge",
     "largest_lower_tension_x", "largest_upper_tension_x", "largest_pressure_x",
-    "left_shear_intensity", "right_shear_intensity",
-}  # fmt: skip
+} | {f"{side}_shear_intensity{end}" for side in ("left", "right") for end in ("", "_reversal", "_return")}  # fmt: skip
 #: Positions: they change their sign when the picture is turned or mirrored, and move with the contact.
 POSITIONS = {
     "contact_centre", "contact_centre_reversal", "contact_centre_return",

@@ -24,7 +24,7 @@ SLIPPERY = 1.0e-3
 _TABLE = [
     (r".*(left|right)|contact_centre.*|.*_edge|.*(tension|shear|pressure|von_mises)_[xy]|x|contact_length", "half_width"),
     (r".*slip_zone.*|.*_edge_reach|.*stick_length", "half_width"),
-    (r".*_shear_intensity", "shear_intensity"),
+    (r".*_shear_intensity.*", "shear_intensity"),
     (r".*interface_(tension|shear)", "pressure"),
     (r".*stick_ratio.*|patch_shift.*|change|loss_factor|creepage_number|.*_edge_exponent", "one"),
     (r"dissipation_number", "friction_squared"),

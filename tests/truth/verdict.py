@@ -141,8 +141,9 @@ def quantities(result: mfv.Result) -> dict[str, np.ndarray]:
 
 
 def public_name(path: str) -> str:
-    """The name by which warnings call a quantity."""
-    return "cycle_dissipation" if path == "cycles/dissipation" else path.split("/")[1]
+    """The name by which warnings call a quantity; edges at the turning points of cycles have the names of those at the end."""
+    name = re.sub(r"^((left|right)_.*)_(reversal|return)$", r"\1", path.split("/")[1])
+    return "cycle_dissipation" if path == "cycles/dissipation" else name
 
 
 def judge(problem: Problem, base: mfv.Result, truth: Truth) -> dict[str, Verdict]:

@@ -12,7 +12,7 @@ module mfv_edge_fields
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
    use mfv_contact_system, only: constraints_type, contact_system_type, load_type, response_type
-   use mfv_edge_intensity, only: find_root_intensity, singular_intensities
+   use mfv_edge_intensity, only: find_root_intensity, samples, singular_intensities
    use mfv_kinds, only: wp
    use mfv_motions, only: control_displacement, control_force, motion_approach, motion_count, motion_rotation, motions
    use mfv_node_status, only: holds, in_contact, node_open, node_stick
@@ -106,29 +106,36 @@ contains
    end function slip_zones_of
 
    !> Exponents of the pressure at the edges of a patch, and its intensities at corners. Of different bodies whose outermost node
-   !> sticks the edge is not known: the pressure oscillates at a corner, and elsewhere there is a slip zone without a node. `turns`:
-   !> whether the moment is prescribed.
+   !> sticks the edge is not known: the pressure oscillates at a corner, and elsewhere there is a slip zone without a node; nor are
+   !> intensities from nodes that stick beside it. `turns`: whether the moment is prescribed.
    subroutine add_exponents(model, state, patch, turns, edges)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       type(patch_type), intent(in) :: patch
       logical, intent(in) :: turns
       type(edge_field_type), intent(inout) :: edges(2)
-      logical :: ends(2), unknown(2)
-      real(wp) :: powers(2)
+      logical :: ends(2), unknown(2), mixed(2)
+      real(wp) :: powers(2), none
 
+      none = ieee_value(1.0_wp, ieee_quiet_nan)
       ends = [patch%left_ends, patch%right_ends]
       powers = [patch%left_power, patch%right_power]
-      unknown = holds(state%status([patch%first, patch%last])) .and. is_coupled(model)
-      edges%exponent = merge(powers - 1.0_wp, powers, ends)
       ! Other surfaces that end there are cut off.
-      unknown = unknown .or. ends .and. .not. [is_corner(model, patch%first, -1), is_corner(model, patch%last, 1)]
+      unknown = ends .and. .not. [is_corner(model, patch%first, -1), is_corner(model, patch%last, 1)]
+      mixed = unknown
+      if (is_coupled(model)) then
+         unknown = unknown .or. holds(state%status([patch%first, patch%last]))
+         associate (last => min(patch%first + samples, patch%last), first => max(patch%last - samples, patch%first))
+            mixed = unknown .or. [any(holds(state%status(patch%first:last))), any(holds(state%status(first:patch%last)))]
+         end associate
+      end if
+      edges%exponent = merge(powers - 1.0_wp, powers, ends)
       if (any(ends)) edges%corner = singular_intensities(model, state%fields%pressure, patch, powers, ends, turns)
-      where (.not. ends .or. unknown) edges%corner = ieee_value(1.0_wp, ieee_quiet_nan)
-      where (unknown)
-         edges%exponent = edges%corner
-         edges%normal = edges%corner
-         edges%reach = edges%corner
+      where (unknown) edges%exponent = none
+      where (.not. ends .or. mixed) edges%corner = none
+      where (mixed)
+         edges%normal = none
+         edges%reach = none
       end where
    end subroutine add_exponents
 

@@ -15,9 +15,9 @@ module mfv_edge_intensity
    use mfv_zone_edges, only: has_known_error, patch_type
    implicit none
    private
-   public :: find_root_intensity, singular_intensities
+   public :: find_root_intensity, samples, singular_intensities
 
-   !> Nodes that an asymptote is found from.
+   !> Nodes that an asymptote is found from; the next one must agree.
    integer, parameter :: samples = 3
    !> Most intervals of an unequal mesh for its discrete solution.
    integer, parameter :: most_intervals = 32

@@ -846,7 +846,8 @@ contains
       end associate
    end function edge_fields
 
-   !> Add the outermost edges of the present state to its turning point.
+   !> Add the outermost edges of the present state to its turning point; not where the surfaces wear, whose edges are as fine as what
+   !> wears away in a cycle.
    subroutine add_edge_fields(self, point)
       class(simulation_type), intent(in) :: self
       type(turning_point_type), intent(inout) :: point
@@ -856,7 +857,7 @@ contains
       call find_patches(self%contact%model, self%contact%state, patches)
       point%left = undefined_edge()
       point%right = point%left
-      if (size(patches) == 0) return
+      if (size(patches) == 0 .or. self%contact%model%scene%wear%acts()) return
       edges = self%edge_fields(patches)
       point%left = edges(1, 1)
       point%right = edges(2, size(patches))
