@@ -129,6 +129,19 @@ def test_every_cycle_has_its_edges(coupled: bool) -> None:
     assert "left_corner_intensity_return" not in cycles
 
 
+def test_noise_of_the_normal_force_is_no_turning_point() -> None:
+    """K_T is the change since the tangential force last turned, as long as mu dP is far below dQ, as of loads from finite elements."""
+    angle = np.arange(1, 41) / 40.0 * 2.5 * math.pi
+    noise = 1.0 + 1.0e-5 * np.random.default_rng(1).standard_normal(40)
+    path = History(normal_force=list(P * noise), tangential_force=list(Q * np.sin(angle)))
+    scene = Scene(
+        PLANE, CYLINDER, friction=Friction.coulomb(MU), mesh=Mesh(nodes=201, gap="parabolic"), steps=[Step(normal_force=P)], history=path
+    )
+    seen = mfv.run(scene).observables
+    assert seen.right_shear_intensity == pytest.approx(2.0 * K_T, rel=1e-4)
+    assert seen.right_asymptotic_slip_zone == pytest.approx(2.0 * K_T / (MU * K_N), rel=1e-3)
+
+
 def test_corners() -> None:
     """P/(pi sqrt(2 b)) at the ends of a punch; sliding with coupling (Johnson 1985, section 2.5, exponent -1/2 -+ l, tan(pi l) = beta mu)."""
     b = 0.05

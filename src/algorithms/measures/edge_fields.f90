@@ -20,7 +20,7 @@ module mfv_edge_fields
    use mfv_zone_edges, only: is_beyond_corner, patch_type
    implicit none
    private
-   public :: edge_field_type, edge_fields_of, edge_quantities, most_patches, undefined_edge
+   public :: edge_field_type, edge_fields_of, edge_quantities, most_patches, undefined_edge, is_coupled
 
    !> A contact edge. NaN where something is not defined.
    type :: edge_field_type

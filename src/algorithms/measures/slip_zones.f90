@@ -182,14 +182,14 @@ contains
       if (width < visible*model%width(edge) .or. width > widest_hidden*model%width(edge)) width = 0.0_wp
    end function hidden_width_at_edge
 
-   !> Add the load segment from `start` to `state`. `rates`: change of each load; `nodes`: largest number of nodes in a slip zone on
+   !> Add the load segment from `start` to `state`. `changes`: of the loads, see turns_with; `nodes`: largest number of nodes in a slip zone on
    !> it. `tolerance`: relative tolerance of the linear solver.
-   subroutine add_segment(self, model, start, state, rates, nodes, tolerance)
+   subroutine add_segment(self, model, start, state, changes, nodes, tolerance)
       class(slip_record_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       type(segment_start_type), intent(in) :: start
       type(contact_state_type), intent(in) :: state
-      real(wp), intent(in) :: rates(motion_count), tolerance
+      real(wp), intent(in) :: changes(motion_count), tolerance
       integer, intent(in) :: nodes
       integer :: direction(motion_count)
       real(wp) :: work, width
@@ -199,9 +199,9 @@ contains
          self%farthest = max(self%farthest, maxval(abs(state%fields%slip()), mask=in_contact(state%status)))
          self%half_width = max(self%half_width, 0.5_wp*sum(model%width, mask=in_contact(state%status)))
       end if
-      direction = direction_of(rates)
+      direction = directions_of(changes)
       if (all(direction == 0)) return
-      if (self%turns_with(rates)) call begin_direction(self, direction)
+      if (self%turns_with(changes)) call begin_direction(self, direction)
       self%most_nodes = max(self%most_nodes, nodes)
       self%dissipation = self%dissipation + (state%dissipation - start%dissipation)
       if (self%most_nodes == 0) then
@@ -225,22 +225,25 @@ contains
       self%width = self%width + width*work
    end subroutine add_segment
 
-   !> Whether loads with these changes do not all go on in their directions: the last segments end at a turning point.
-   pure logical function turns_with(self, rates)
+   !> Whether loads with these changes, as tangential forces, do not all go on in their directions: the last segments end at a turning point.
+   pure logical function turns_with(self, changes)
       class(slip_record_type), intent(in) :: self
-      real(wp), intent(in) :: rates(motion_count)
+      real(wp), intent(in) :: changes(motion_count)
       integer :: direction(motion_count)
 
-      direction = direction_of(rates)
+      direction = directions_of(changes)
       turns_with = any(direction /= 0) .and. any(direction /= self%direction)
    end function turns_with
 
-   !> Directions of loads with these changes: -1, 0 or 1.
-   elemental integer function direction_of(rate)
-      real(wp), intent(in) :: rate
+   !> Directions of loads with these changes: -1, 0 or 1. A load that changes far less than another one does not turn the slip, as
+   !> the noise of a normal force under a changing tangential one.
+   pure function directions_of(changes) result(directions)
+      real(wp), intent(in) :: changes(motion_count)
+      integer :: directions(motion_count)
+      real(wp), parameter :: far_less = 0.1_wp
 
-      direction_of = merge(int(sign(1.0_wp, rate)), 0, abs(rate) > 0.0_wp)
-   end function direction_of
+      directions = merge(int(sign(1.0_wp, changes)), 0, abs(changes) > far_less*maxval(abs(changes)))
+   end function directions_of
 
    !> Begin segments in other directions of the loads.
    pure subroutine begin_direction(self, direction)

@@ -7,7 +7,7 @@ module mfv_simulation
    use mfv_contact_state, only: contact_state_type
    use mfv_contact_system, only: initial_loads, load_type
    use mfv_cycle, only: append_cycle, cycle_type, new_turning_point, turning_point_type
-   use mfv_edge_fields, only: edge_field_type, edge_fields_of, undefined_edge
+   use mfv_edge_fields, only: edge_field_type, edge_fields_of, is_coupled, undefined_edge
    use mfv_derivative_increments, only: differentiate_end
    use mfv_error, only: error_type
    use mfv_contact_path, only: contact_path_type, new_contact_path, path_position_type, saved_path_type, segment_type
@@ -847,7 +847,7 @@ contains
    end function edge_fields
 
    !> Add the outermost edges of the present state to its turning point; not where the surfaces wear, whose edges are as fine as what
-   !> wears away in a cycle.
+   !> wears away in a cycle, nor of coupled bodies, whose edges are known at one of both ends only: where they slip.
    subroutine add_edge_fields(self, point)
       class(simulation_type), intent(in) :: self
       type(turning_point_type), intent(inout) :: point
@@ -857,7 +857,7 @@ contains
       call find_patches(self%contact%model, self%contact%state, patches)
       point%left = undefined_edge()
       point%right = point%left
-      if (size(patches) == 0 .or. self%contact%model%scene%wear%acts()) return
+      if (size(patches) == 0 .or. self%contact%model%scene%wear%acts() .or. is_coupled(self%contact%model)) return
       edges = self%edge_fields(patches)
       point%left = edges(1, 1)
       point%right = edges(2, size(patches))
@@ -1149,7 +1149,7 @@ contains
          call self%contact%derivatives%begin_segment(mod(self%leg%number, 2) == 0 .and. .not. allocated(step%path), &
                                                      targets%control)
       call begin_segment(self, targets, step, before, segments)
-      if (self%contact%model%tangential .and. self%slip%turns_with(self%leg%segment%load%rate)) &
+      if (self%contact%model%tangential .and. self%slip%turns_with(changes_of(self))) &
          call set_mark(self, mark_turn, self%leg%number)
       call apply_segment(self, observer, error)
       if (.not. allocated(error)) call reach_exactly(self%contact, targets)
@@ -1160,7 +1160,7 @@ contains
             call differentiate_end(self%contact, self%leg%segment)
          end if
       end if
-      call self%slip%add_segment(self%contact%model, self%leg%start, self%contact%state, self%leg%segment%load%rate, &
+      call self%slip%add_segment(self%contact%model, self%leg%start, self%contact%state, changes_of(self), &
                                  self%contact%slip_zone_nodes, self%contact%system%tolerance)
       self%load%control = targets%control
       self%load%value = targets%value
@@ -1238,6 +1238,21 @@ contains
       end associate
       call self%contact%note_start(self%leg%segment%load)
    end subroutine begin_segment
+
+   !> Changes of the loads in the present segment, to be compared with each other in how they make nodes slip: as tangential forces,
+   !> displacements times the modulus, and what presses times the coefficient of friction.
+   pure function changes_of(self) result(changes)
+      class(simulation_type), intent(in) :: self
+      real(wp) :: changes(motion_count), unit(motion_count)
+      integer :: i
+
+      associate (load => self%leg%segment%load, model => self%contact%model)
+         unit = model%unit_of_arm([(i, i=1, motion_count)])
+         changes = load%rate*merge(1.0_wp/unit, unit*model%compliance%modulus, load%control == control_force)
+         where (.not. (motions%is_stress .or. [(i == motion_shift, i=1, motion_count)])) &
+            changes = changes*model%scene%friction%static%largest()
+      end associate
+   end function changes_of
 
    !> The load from `start` to `goal`, with its rate per segment. A change of force within round-off of the largest force so far,
    !> `scale`, counts as zero.
