@@ -88,6 +88,8 @@ contains
       character(len=21) :: group
       integer :: i
 
+      is_there = .false.
+      if (size(unresolved) == 0) return
       is_there = any([(has_word(unresolved(i)%quantities, name), i=1, size(unresolved))])
       group = named_as(name)
       if (.not. is_there .and. group /= '') is_there = is_unresolved(unresolved, trim(group))

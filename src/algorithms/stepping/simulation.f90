@@ -73,8 +73,8 @@ module mfv_simulation
    type :: position_type
       !> Numbers of snapshots and cycles so far, see simulation_type; and of complete cycles of all steps.
       integer :: snapshot_count = 0, cycle_count = 0, cycles_done = 0
-      !> See mark_loading and so on; `step` is 0 if not set.
-      type(snapshot_type) :: marks(mark_count)
+      !> See mark_loading and so on, shape (mark_count); `step` is 0 if not set.
+      type(snapshot_type), allocatable :: marks(:)
       !> Outcome (see mfv_status): MFV_COMPLETE as long as no error has occurred; and its explanation.
       integer :: outcome = MFV_COMPLETE
       character(:), allocatable :: message
@@ -197,6 +197,7 @@ contains
       integer, intent(in), optional :: keep_states
       type(simulation_type) :: self
 
+      allocate (self%marks(mark_count))
       self%message = trim(scene%fault())
       if (self%message /= '') then
          self%outcome = MFV_INPUT_ERROR

@@ -58,7 +58,7 @@ contains
       self%size = self%size + 1
       associate (key => self%keys(self%size))
          key%group = group
-         key%name = name
+         key%name = trim(name)
          key%kind = kind
          key%meaning = meaning
          key%default = ''
@@ -131,9 +131,13 @@ contains
    pure integer function place(self, group, name)
       class(catalogue_type), intent(in) :: self
       character(*), intent(in) :: group, name
+      integer :: length
 
+      length = len_trim(name)
       do place = size(self%keys), 1, -1
-         if (self%keys(place)%group == group .and. self%keys(place)%name == name) return
+         if (len(self%keys(place)%name) /= length) cycle
+         if (self%keys(place)%name /= name) cycle
+         if (self%keys(place)%group == group) return
       end do
    end function place
 

@@ -101,15 +101,17 @@ contains
       call h5fclose_f(file, code)
    end subroutine check_is_result
 
-   !> Begin an empty file that will replace `path`. Error MFV_FILE_ERROR if check_writable refuses it.
+   !> Begin an empty file that will replace `path`. Error MFV_FILE_ERROR if check_writable refuses a file that is there.
    subroutine create_file(path, writer, error)
       character(*), intent(in) :: path
       type(writer_type), intent(out) :: writer
       type(error_type), allocatable, intent(out) :: error
       integer(hid_t) :: access
+      logical :: is_there
       integer :: code
 
-      call check_writable(path, error)
+      inquire (file=path, exist=is_there)
+      if (is_there) call check_writable(path, error)
       if (allocated(error)) then
          error%status = MFV_FILE_ERROR
          return
