@@ -90,10 +90,9 @@ def scene(trace: Trace, finer: int, smoothed: bool) -> mfv.Scene:
     """The trace pressed on a half-plane, sheared, and one cycle."""
     force = PRESSURE * trace.slope * MODULUS / (1.0 - POISSON**2) * trace.length
     steps = [mfv.Step(normal_force=force), mfv.Step(force_ratio=SHARE), mfv.Step(force_ratio=-SHARE, cycles=1)]
-    kind = "monotone_cubic" if smoothed else "linear"
     return mfv.Scene(
         mfv.Body.half_plane(youngs_modulus=MODULUS, poisson_ratio=POISSON),
-        mfv.Body.profile(trace.x, trace.height, rigid=True, interpolation=kind),
+        mfv.Body.profile(trace.x, trace.height, rigid=True, interpolation="monotone_cubic" if smoothed else "linear"),
         mesh=mfv.Mesh(nodes=finer * (trace.x.size - 1), period=trace.length),
         friction=mfv.Friction.coulomb(MU),
         steps=steps,
