@@ -62,7 +62,8 @@ module mfv_run_help
       '', &
       'Output:', &
       '  The summary is printed to standard output, messages to standard error; so is progress, if that', &
-      '  is a terminal. Ctrl-C or SIGTERM ends the run at its next event; the result is written.', &
+      '  is a terminal: how much of the load history is done, and the time left if the rest goes on as', &
+      '  the last half did. Ctrl-C or SIGTERM ends the run at its next event; the result is written.', &
       '', &
       'Exit codes:', &
       '  0     complete: every step was reached', &

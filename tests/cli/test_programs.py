@@ -494,6 +494,13 @@ def test_progress_shows_on_a_terminal_only(tmp_path):
     seen = shown_on_a_terminal([PROGRAM, "--estimate", "case.nml"], cwd=tmp_path)
     assert re.search(rb"\r  \d+ %, load segment \d of 5", seen)
     assert re.search(rb"\r  coarser meshes: \d+ %, load segment \d+ of 15", seen)
+    # Held up after a little work, so that it takes long enough for an estimate of the time left.
+    wait = (
+        "import signal, subprocess, sys, time; run = subprocess.Popen(sys.argv[1:]); time.sleep(0.3);"
+        "run.send_signal(signal.SIGSTOP); time.sleep(2.0); run.send_signal(signal.SIGCONT); run.wait()"
+    )
+    seen = shown_on_a_terminal([sys.executable, "-c", wait, PROGRAM, "case.nml"], cwd=tmp_path)
+    assert re.search(rb"\r  \d+ %, \d+ s left, load segment \d of 5, \d+ nodes in contact, \d+ stuck", seen)
 
 
 def test_refined_meshes_resolve_small_slip_zones(tmp_path):

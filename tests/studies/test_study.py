@@ -6,6 +6,7 @@ import h5py
 import numpy as np
 import pandas
 import pytest
+import scipy.stats
 import xarray
 from small import AXES, BASE, CASES, PAD, PAD_FORCES, write
 
@@ -122,6 +123,44 @@ def test_values_in_doubt(tmp_path):
     with pytest.raises(ValueError, match="13 lines; at most 12"):
         many = mfv.study(tmp_path / "pad.nml", {"Q": PAD_FORCES, "friction%mu": list(np.linspace(0.5, 0.8, 13))})
         lines(many, over="Q")
+
+
+def test_means_over_realisations(study, tmp_path):
+    """Against scipy, over any axis; what is undefined or in doubt in a realisation is in doubt in the mean; pictures and files."""
+    from mfv.studies import flagged, mean_over
+
+    _, table = study
+    complete = table.sel({"Q": 2e-4}, method="nearest")
+    mean = mean_over(complete, "friction%mu")
+    assert mean["case"].dims == ("scene%coupling",) and mean["realisations"].values.tolist() == [2, 2, 2]
+    values = complete["dissipation"].transpose("friction%mu", ...).values
+    np.testing.assert_allclose(mean["dissipation"], values.mean(axis=0), rtol=1e-14)
+    interval = scipy.stats.t.interval(0.95, 1, values.mean(axis=0), scipy.stats.sem(values, axis=0))
+    np.testing.assert_allclose(mean["dissipation_error"], 0.5 * (interval[1] - interval[0]), rtol=1e-12)
+    assert mean["dissipation"].attrs["units"] == "N" and "95 % confidence" in mean["dissipation_error"].attrs["long_name"]
+    assert not any("_error_error" in name for name in mean.data_vars) and mean.attrs["mean_over"] == "friction%mu"
+    assert len(lines(mean_over(table, "friction%mu"), "dissipation").collections) == 3
+    dataset.write(mean, tmp_path / "mean.csv")
+    assert "dissipation_error" in (tmp_path / "mean.csv").read_text()
+    (tmp_path / "pad.nml").write_text(PAD)
+    of_pads = mfv.study(tmp_path / "pad.nml", {"friction%mu": [0.1, 0.5, 0.65], "body(2)%radius": [127.0, 128.0]})
+    mean = mean_over(of_pads, "friction%mu")  # with 0.1 it slides
+    assert mean["realisations"].values.tolist() == [2, 2] and not flagged(mean, "normal_force").any()
+    assert flagged(mean, "cycle_dissipation").all() and np.isfinite(mean["cycle_dissipation"]).all()
+    mean = mean_over(mfv.study(tmp_path / "pad.nml", {"Q": PAD_FORCES}), "Q")  # one of them is not resolved
+    assert flagged(mean, "cycle_dissipation") and not flagged(mean, "approach")
+    assert str(mean["warnings"].values).startswith("1 of 3 realisations have warnings")
+    for axis, words in (("friction%m", "did you mean friction%mu"), ("Q", "no axis 'Q'")):
+        with pytest.raises(ValueError, match=words):
+            mean_over(of_pads, axis)
+    pairs = {"pair": {"friction%mu": [0.5, 0.65], "body(2)%radius": [127.0, 128.0]}}
+    zipped = mfv.study(tmp_path / "pad.nml", pairs)
+    of_all = mean_over(zipped, "pair")
+    assert of_all["approach"].ndim == 0 and len(dataset.frame_of(of_all)) == 1
+    with pytest.raises(ValueError, match="varies together with"):
+        mean_over(zipped, "friction%mu")
+    with pytest.raises(mfv.MfvError, match="between 0 and 1, not 95"):
+        mean_over(of_pads, "friction%mu", 95)
 
 
 def test_bars_that_cannot_be_are_explained(tmp_path):

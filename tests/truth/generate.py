@@ -10,12 +10,13 @@ import numpy as np
 
 from .problem import Keys, Problem
 
-#: From these seeds on some bodies are anisotropic, most surfaces repeat, most bodies have layers, and pins are pressed into bores; the
-#: numbers of smaller seeds do not change.
+#: From these seeds on some bodies are anisotropic, most surfaces repeat, most bodies have layers, pins are pressed into bores, and
+#: surfaces are rough; the numbers of smaller seeds do not change.
 ANISOTROPIC = 200_000
 PERIODIC = 300_000
 LAYERED = 400_000
 FITS = 500_000
+ROUGH = 600_000
 
 
 class Draw:
@@ -57,6 +58,8 @@ class Sizes:
 
 def problem(seed: int) -> Problem:
     """The problem of a seed."""
+    if seed >= ROUGH:
+        return _rough(Draw(seed))
     if seed >= FITS:
         return _fit(Draw(seed))
     draw, sizes = Draw(seed), Sizes()
@@ -151,6 +154,87 @@ def _add_loads_of_fit(draw: Draw, made: Problem, sizes: Sizes, shear: float) -> 
         made.tables["turn.csv"] = table
         made.groups.append(("history", {"file": "turn.csv", "cycles": draw.whole(1, 2)}))
     return kind
+
+
+def _rough(draw: Draw) -> Problem:
+    """A self-affine surface that repeats, or on a cylinder: pressed, sheared, cycles."""
+    sizes = Sizes()
+    made = Problem([("scene", {"coupling": draw.one_of(full=0.4, none=0.45, goodman=0.15)})])
+    if draw.chance(0.25):
+        made.one("scene")["plane"] = "stress"
+    plane = made.one("scene").get("plane", "strain")
+    length, slope = draw.power(-3, 3), draw.power(-3, -0.8)
+    repeats = draw.chance(0.7)
+    kind = draw.one_of(given=0.6, points=0.2, default=0.2)
+    profile, shortest = _self_affine(draw, made, length, slope, 10 if kind == "default" else 40)
+    bodies: list[Keys] = [{"shape": "half_plane"}, profile]
+    rigid = draw.whole(0, 1) if draw.chance(0.5) else None
+    alike = _material(draw) if draw.chance(0.25) else None
+    for number, body in enumerate(bodies):
+        body.update({"rigid": True} if number == rigid else alike or _material(draw))
+    sizes.modulus = 2 / sum(compliance(body, plane) for body in bodies)
+    # The length in contact is about the force over E* and the slope.
+    share = draw.power(-1.7, -0.3)
+    sizes.force = share * slope * sizes.modulus * length
+    sizes.half_width = 0.5 * share * length
+    if not repeats:
+        table = made.tables["profile.csv"]
+        half = length * draw.between(0.15, 0.35)
+        curvature = 8 * sizes.force / (np.pi * sizes.modulus * half**2)  # Hertz: half of the force of this contact
+        height = np.array(table["height"]) + 0.5 * curvature * np.array(table["x"]) ** 2
+        table["height"] = (height - height.min()).tolist()
+    if draw.chance(0.4):
+        bodies.reverse()
+    made.groups += [("body", body) for body in bodies]
+    made.labels["shape"] = "rough, repeats" if repeats else "rough"
+    law = draw.one_of(coulomb=0.85, none=0.15)
+    if law == "coulomb":
+        sizes.mu = draw.power(-1.2, 0.0)
+        made.groups.append(("friction", {"law": law, "mu": sizes.mu}))
+    else:
+        sizes.mu = 0.0
+    press: Keys = {"normal_force": sizes.force}
+    if law != "none" and draw.chance(0.5):
+        press["friction"] = False
+    made.groups.append(("step", press))
+    loads = draw.one_of(press=1, shear=3, cycles=4, forces=2) if law != "none" else draw.one_of(press=1, forces=1)
+    _LOADS[loads](draw, made, sizes)
+    costly = made.one("scene")["coupling"] != "none"
+    mesh: Keys = {"period": length} if repeats else {"half_width": 0.5 * length}
+    if kind == "points":  # a node at every point
+        mesh["nodes"] = len(made.tables["profile.csv"]["x"]) - 1
+    elif kind == "given":  # from two to twenty on the shortest wave
+        mesh["nodes"] = int(np.clip(length / shortest * draw.power(0.3, 1.3), 24, 120 if costly else 400))
+    elif not repeats:
+        mesh.pop("half_width")
+    if mesh:
+        made.groups.append(("mesh", mesh))
+    _add_solver(draw, made, law, kind)
+    made.one("output").update(states="steps", history="steps", error_estimate=True)
+    made.labels.update(law=law, loads=loads, mesh=kind)
+    return made
+
+
+def _self_affine(draw: Draw, made: Problem, length: float, slope: float, most: int) -> tuple[Keys, float]:
+    """One period of a self-affine surface with a roll-off and at most a number of its shortest waves, on two to sixteen points a wave,
+    straight or smooth between them; its keys and the shortest wave."""
+    shortest, roll_off = draw.whole(6, most), draw.whole(1, 5)
+    numbers = np.arange(1, shortest + 1)
+    hurst = draw.between(0.3, 1.0)
+    amplitude = np.maximum(numbers, roll_off) ** (-0.5 - hurst) * draw.random.normal(size=(2, shortest))
+    count = int(shortest * draw.power(0.35, 1.2))
+    x = length * (np.arange(count + 1) / count - 0.5)
+    waves = 2 * np.pi / length * numbers
+    height = amplitude[0] @ np.cos(np.outer(waves, x)) + amplitude[1] @ np.sin(np.outer(waves, x))
+    height *= slope / np.sqrt(0.5 * np.sum((amplitude * waves) ** 2))
+    height[-1] = height[0]
+    keys: Keys = {"shape": "profile", "file": "profile.csv"}
+    kind = "smooth" if draw.chance(0.6) else "straight"
+    if kind == "smooth":
+        keys["interpolation"] = "monotone_cubic"
+    made.tables["profile.csv"] = {"x": x.tolist(), "height": (height - height.min()).tolist()}
+    made.labels["profile"] = kind
+    return keys, length / shortest
 
 
 def _material(draw: Draw) -> Keys:

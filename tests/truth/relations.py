@@ -4,6 +4,7 @@ stepping, and the ways to run it."""
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import tempfile
 from collections.abc import Callable
@@ -44,6 +45,8 @@ DIMENSIONS = {
 }  # fmt: skip
 #: Of meshes that are made from edges, which round-off moves; of laws that are integrated with a tolerance.
 ON_EDGES, OF_LAWS = 1.0e-5, 1.0e-3
+#: Accuracy of large increments without a key.
+DEFAULT_ACCURACY = 1.0e-3
 #: Relative difference of meshes that count as one.
 SAME_MESH = 1.0e-4
 #: Error of the tractions over the accuracy that is allowed for them.
@@ -162,10 +165,10 @@ def with_solver(problem: Problem) -> Problem:
     return made
 
 
-def with_events(problem: Problem) -> Problem | None:
-    """Every event, where the problem has large increments or trial steps."""
+def with_events(problem: Problem, base: mfv.Result) -> Problem | None:
+    """Every event, where the problem has large increments or trial steps, by its keys or by default."""
     made = problem.copy()
-    if not made.has("solver", "accuracy") and not made.has("solver", "stepping"):
+    if not (made.has("solver", "accuracy") or made.has("solver", "stepping") or base.attributes["stepping"] == "leap"):
         return None
     keys = made.one("solver")
     keys.pop("accuracy", None)
@@ -231,17 +234,29 @@ def _accuracy_differences(base: mfv.Result, other: mfv.Result, accuracy: float) 
     return {path: float(error) for path, error in found.items() if error > max(OVER_ACCURACY * accuracy, TOLERANCE)}
 
 
-def tolerance_of(problem: Problem) -> float:
+def accuracy_of(problem: Problem, base: mfv.Result) -> float:
+    """That of large increments, also by default; zero without them."""
+    return problem.accuracy() or (DEFAULT_ACCURACY if base.attributes["stepping"] == "leap" else 0.0)
+
+
+def tolerance_of(problem: Problem, accuracy: float) -> float:
     """Of fields that only round-off should change."""
     law = problem.one("friction")["law"] if problem.has("friction") else "none"
     if law in ("weakening", "dahl"):
         return OF_LAWS
-    return max(ON_EDGES if problem.has("mesh", "refine") else TOLERANCE, 0.1 * problem.accuracy())
+    return max(ON_EDGES if problem.has("mesh", "refine") else TOLERANCE, 0.1 * accuracy)
+
+
+def beyond_accuracy(found: Differences, accuracy: float) -> Differences:
+    """Without the work of friction up to the accuracy, which is its own: another solver follows events elsewhere."""
+    work = re.compile(r".*/(friction_work|.*dissipation.*|loss_factor)")
+    return {path: error for path, error in found.items() if not (work.fullmatch(path) and error <= accuracy)}
 
 
 def relations(problem: Problem, base: mfv.Result, seed: int) -> dict[str, Callable[[], Differences]]:
     """The relations that apply, by name: each solves the problem again and returns what differs from `base`."""
-    tolerance = tolerance_of(problem)
+    accuracy = accuracy_of(problem, base)
+    tolerance = tolerance_of(problem, accuracy)
     plain = problem.copy()
     plain.one("output").update(error_estimate=False)
     rigid = any(body.get("rigid") for body in problem.all("body"))
@@ -256,14 +271,14 @@ def relations(problem: Problem, base: mfv.Result, seed: int) -> dict[str, Callab
     pieces = in_pieces(plain)
     if pieces is not None and not problem.has("mesh", "refine"):
         # Other increments, each with the error that is allowed.
-        of_pieces = max(tolerance, OVER_ACCURACY * problem.accuracy())
+        of_pieces = max(tolerance, OVER_ACCURACY * accuracy)
         found["split steps"] = lambda: without_extremes(compared(base, pieces.run(), of_pieces))
-    found["solver"] = lambda: compared(base, with_solver(plain).run(), tolerance)
-    events = with_events(plain)
+    found["solver"] = lambda: beyond_accuracy(compared(base, with_solver(plain).run(), tolerance), accuracy)
+    events = with_events(plain, base)
     if events is not None:
         # Rounding errors may change a block of cycles of wear by one.
         blocks = problem.has("wear") and bool(np.any(base.cycles.block > 1))
-        allowed = max(problem.accuracy(), 0.1 * problem.wear_tolerance() if blocks else 0.0)
+        allowed = max(accuracy, 0.1 * problem.wear_tolerance() if blocks else 0.0)
         found["stepping"] = lambda: _accuracy_differences(base, events.run(), allowed)
     found["Python"] = lambda: compared(base, plain.scene().run(), TOLERANCE)
     found["program"] = lambda: compared(base, by_program(plain), TOLERANCE)

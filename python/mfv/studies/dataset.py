@@ -75,6 +75,8 @@ def dataset_of(study: Study, keys: Sequence[str], solved: Sequence[Solved | None
 
 def frame_of(table: xarray.Dataset) -> pandas.DataFrame:
     """The dataset as a data frame, one row per case, without fields; logical values as 0 and 1."""
+    if table["case"].ndim == 0:  # the mean over the only axis
+        table = table.expand_dims("row")
     dimensions = table["case"].dims
     columns = [name for name in table.data_vars if table[name].dims == dimensions]
     coordinates = [name for name in table.coords if set(table[name].dims) <= set(dimensions)]
