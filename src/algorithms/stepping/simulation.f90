@@ -14,8 +14,8 @@ module mfv_simulation
    use mfv_error_bar, only: error_estimate_type
    use mfv_frictionless, only: apply_directly
    use mfv_kinds, only: wp
-   use mfv_load_extremes, only: add_estimate, candidate_count, candidate_tension, candidate_von_mises, load_extremes_type, &
-                                most_rows, over_cycle, &
+   use mfv_load_extremes, only: add_estimate, candidate_count, candidate_tension, candidate_von_mises, extreme_type, &
+                                load_extremes_type, most_rows, over_cycle, &
                                 over_rows, over_steps, slip_range_type
    use mfv_leap, only: apply_by_large_increments
    use mfv_load_summary, only: load_summary_type
@@ -914,13 +914,14 @@ contains
       integer, intent(in) :: first, candidate
       type(load_extremes_type), intent(inout) :: extremes
       type(largest_type) :: largest
+      type(extreme_type) :: before
       logical :: available, is_left(most_rows)
       !> An estimate is not smaller than this part of a stress that is among the largest.
       real(wp), parameter :: least = 0.85_wp
       integer :: i, number
 
       associate (found => extremes%searched(candidate), estimates => extremes%estimate(:, candidate))
-         found%row = 0
+         found = extreme_type()
          is_left = extremes%row(:, candidate) > 0
          do number = 1, count(is_left)
             i = maxloc(estimates, dim=1, mask=is_left)
@@ -932,7 +933,13 @@ contains
             end if
             call find_largest(self%padded(self%marks(first + i - 1)))
             if (.not. available) exit
+            before = found
             call found%raise(largest%value, extremes%row(i, candidate), largest%x, largest%y)
+            associate (interval => self%contact%model%interval())
+               if (before%row > 0) call found%compete(before%value, before%x, interval)
+               call found%compete(largest%value, largest%x, interval)
+               call found%compete(largest%rival, largest%rival_x, interval)
+            end associate
          end do
       end associate
 
