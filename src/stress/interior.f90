@@ -62,6 +62,7 @@ module mfv_interior
       procedure :: contains_point
       procedure :: centre
       procedure :: kinks
+      procedure :: knots_apart
       procedure :: knots
       procedure :: point_at
       procedure :: is_sheared
@@ -510,6 +511,14 @@ contains
       n = size(self%elements%from)
       knots = self%length*[self%elements%from, self%elements%to(n:)]
    end function knots
+
+   !> Lengths of the elements.
+   pure function knots_apart(self) result(lengths)
+      class(interior_type), intent(in) :: self
+      real(wp), allocatable :: lengths(:)
+
+      lengths = self%length*(self%elements%to - self%elements%from)
+   end function knots_apart
 
    !> x and y at a depth below the arc length `arc`.
    pure function point_at(self, arc, depth) result(point)

@@ -13,9 +13,11 @@ module mfv_stress_search
    !> What is searched for along a line.
    integer, parameter :: surface_tension = 1, surface_von_mises = 2, interface_tension = 3, interface_shear = 4
 
-   !> A largest stress, force/length^2, and where it is: x and y, length.
+   !> A largest stress, force/length^2, and where it is: x and y, length. Of the tension also the largest maximum at another place,
+   !> farther than an interval, if there is one, and its x.
    type :: largest_type
       real(wp) :: value = 0.0_wp, x = 0.0_wp, y = 0.0_wp
+      real(wp) :: rival = -huge(1.0_wp), rival_x = 0.0_wp
    end type largest_type
 
    type, extends(objective_type) :: search_type
@@ -158,7 +160,7 @@ contains
    !> and if the bulk stress is the largest.
    type(largest_type) function largest_tension(interior) result(largest)
       type(interior_type), intent(in) :: interior
-      real(wp) :: place, point(2), value
+      real(wp) :: place, point(2), value, rival, rival_place
       logical :: stretches
 
       largest%x = ieee_value(1.0_wp, ieee_quiet_nan)
@@ -172,10 +174,12 @@ contains
          largest%value = ieee_value(1.0_wp, ieee_quiet_nan)
          return
       end if
-      call refine_on_line(interior, candidates(interior), surface_tension, place, value)
+      call refine_on_line(interior, candidates(interior), surface_tension, place, value, rival=rival, rival_place=rival_place)
       if (.not. value > largest%value + certified*interior%peak) return
       point = interior%point_at(place, 0.0_wp)
-      largest = largest_type(value, point(1), point(2))
+      largest = largest_type(value, point(1), point(2), rival)
+      point = interior%point_at(rival_place, 0.0_wp)
+      largest%rival_x = point(1)
    end function largest_tension
 
    !> The largest normal traction that opens an interface of the layers, and the largest size of the shear there, force/length^2.
@@ -286,30 +290,42 @@ contains
    end function candidates
 
    !> Largest stress along the surface or an interface: the best local maxima of ascending points, refined between their neighbours
-   !> by golden-section search. `kind`: surface_tension and so on; `layer`: above the interface.
-   subroutine refine_on_line(interior, places, kind, place, value, layer)
+   !> by golden-section search. `kind`: surface_tension and so on; `layer`: above the interface; `rival`, `rival_place`: the largest
+   !> of those farther than an interval from `place`, -huge(rival) if there are none.
+   subroutine refine_on_line(interior, places, kind, place, value, layer, rival, rival_place)
       type(interior_type), intent(in) :: interior
       real(wp), intent(in) :: places(:)
       integer, intent(in) :: kind
       real(wp), intent(out) :: place, value
       integer, intent(in), optional :: layer
+      real(wp), intent(out), optional :: rival, rival_place
       integer, parameter :: starts = 6
-      real(wp) :: values(size(places))
-      logical :: is_start(size(places))
+      real(wp) :: values(size(places)), found(starts), found_at(starts)
+      logical :: is_start(size(places)), is_elsewhere(starts)
       integer :: best, i, n, start
 
       n = size(places)
       values = [(stress_at(places(i)), i=1, n)]
-      best = maxloc(values, dim=1)
-      place = places(best)
-      value = values(best)
       is_start = [(values(i) >= maxval(values(max(i - 1, 1):min(i + 1, n))), i=1, n)]
+      found = -huge(found)
+      found_at = places(1)
       do start = 1, starts
          if (.not. any(is_start)) exit
          best = maxloc(values, dim=1, mask=is_start)
          is_start(best) = .false.
-         call refine_between(places(max(best - 1, 1)), places(min(best + 1, n)))
+         found(start) = values(best)
+         found_at(start) = places(best)
+         call refine_between(places(max(best - 1, 1)), places(min(best + 1, n)), found_at(start), found(start))
       end do
+      best = maxloc(found, dim=1)
+      place = found_at(best)
+      value = found(best)
+      call climb(place, value)
+      if (.not. present(rival)) return
+      is_elsewhere = abs(found_at - place) > maxval(interior%knots_apart())
+      rival = maxval(found, mask=is_elsewhere)
+      rival_place = place
+      if (any(is_elsewhere)) rival_place = found_at(maxloc(found, dim=1, mask=is_elsewhere))
 
    contains
 
@@ -330,8 +346,9 @@ contains
       end function stress_at
 
       !> Take the largest stress between two points if it is larger.
-      subroutine refine_between(from, to)
+      subroutine refine_between(from, to, place, value)
          real(wp), intent(in) :: from, to
+         real(wp), intent(inout) :: place, value
          real(wp), parameter :: golden = 0.6180339887498949_wp, nearly = 1.0e-5_wp
          real(wp) :: left, right, inner(2), found(2), least
 
@@ -355,6 +372,29 @@ contains
          value = maxval(found)
          place = inner(maxloc(found, dim=1))
       end subroutine refine_between
+
+      !> Go on to larger maxima in the intervals beside a maximum between edges: tractions on straight lines give the stress a small
+      !> maximum of its own in every interval, and which of them are nearest to the points of the search is a matter of round-off.
+      subroutine climb(place, value)
+         real(wp), intent(inout) :: place, value
+         integer, parameter :: most_steps = 20, beside = 2
+         real(wp), allocatable :: knots(:)
+         real(wp) :: before
+         integer :: step, here, side
+
+         knots = interior%knots()
+         associate (edges => interior%elements%edges)
+            if (minval(abs(edges - place)) <= maxval(interior%knots_apart())) return
+         end associate
+         do step = 1, most_steps
+            before = place
+            here = count(knots <= place)
+            do side = max(here - beside, 1), min(here + beside, size(knots) - 1)
+               call refine_between(knots(side), knots(side + 1), place, value)
+            end do
+            if (abs(place - before) <= visible*interior%half_width()) exit
+         end do
+      end subroutine climb
    end subroutine refine_on_line
 
    !> Von Mises stress at a depth below the arc length `arc`, -1 outside the body.

@@ -11,6 +11,7 @@ module mfv_discretisation_error
    use mfv_error_bar
    use mfv_friction, only: friction_coefficient_type
    use mfv_kinds, only: pi, wp
+   use mfv_load_extremes, only: candidate_tension, load_extremes_type
    use mfv_motions, only: bulk_motions, control_keep, motion_approach, motion_shift
    use mfv_near_field, only: near_field_type
    use mfv_node_status, only: holds, in_contact
@@ -22,7 +23,9 @@ module mfv_discretisation_error
    use mfv_simulation, only: history_none, mark_loading, mark_return, mark_reversal, new_simulation, simulation_type, &
                              states_steps
    use mfv_slip_zones, only: contact_interval, is_narrow_stick_zone, largest_resolved_error, slip_record_type
+   use mfv_state_interior, only: find_largest_tension
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
+   use mfv_stress_search, only: largest_type
    use mfv_strings, only: to_text
    use mfv_tolerances, only: certified, significant
    use mfv_zone_edges, only: find_patches, held, largest_shear, patch_type, slipping_run, zone_type, zones_of
@@ -93,9 +96,44 @@ contains
             if (peak_is_at_corner(simulation, place, values(:, 1))) estimate%bar(place) = logarithmic_bar(values(place, :))
          end do
          call drop_uncertain_places(values, estimate%bar)
+         if (simulation%contact%model%tangential) call add_rivals(simulation, estimate%bar)
       end if
       simulation%estimate = estimate
    end subroutine estimate_error
+
+   !> The largest tension may be at another place where one is as large within their bars, as at both edges of a contact: its
+   !> distance is added to the bars of places. `bars`: shape (observable_count).
+   subroutine add_rivals(simulation, bars)
+      type(simulation_type), intent(in) :: simulation
+      type(error_bar_type), intent(inout) :: bars(:)
+      character(*), parameter :: body(2) = ['lower', 'upper']
+      type(load_extremes_type) :: extremes
+      type(largest_type) :: largest
+      logical :: available
+      integer :: side
+
+      call simulation%find_extremes(extremes)
+      do side = 1, size(body)
+         associate (found => extremes%searched(candidate_tension(side)))
+            call add('largest_'//body(side)//'_tension', largest_type(found%value, found%x, found%y, found%rival, found%rival_x))
+         end associate
+         call find_largest_tension(simulation%contact%model, simulation%contact%state, side == 2, largest, available)
+         if (available) call add(body(side)//'_tension', largest)
+      end do
+
+   contains
+
+      subroutine add(name, largest)
+         character(*), intent(in) :: name
+         type(largest_type), intent(in) :: largest
+
+         associate (of_value => bars(observable_place(name)), of_place => bars(observable_place(name//'_x')))
+            if (.not. (of_place%known .and. of_place%resolved .and. of_value%known .and. of_value%resolved)) return
+            if (largest%rival >= largest%value - 2.0_wp*of_value%error) &
+               of_place%error = of_place%error + abs(largest%rival_x - largest%x)
+         end associate
+      end subroutine add
+   end subroutine add_rivals
 
    !> Where a quantity is largest is not resolved if it is uncertain by so much that it may be as large elsewhere; but a slip range
    !> is uncertain by what the outermost node misses. `values`: of all observables on all meshes; their bars, shape

@@ -9,7 +9,7 @@ module mfv_resolution
    use mfv_interior, only: has_interior
    use mfv_kinds, only: pi, wp
    use mfv_layers, only: layers_type
-   use mfv_motions, only: motion_approach
+   use mfv_motions, only: motion_approach, motion_interference, motion_shift
    use mfv_node_status, only: holds, in_contact, slip_sign
    use mfv_observables, only: observable_count, observables
    use mfv_profile_sampling, only: find_missed, negligible_pressure, pressure_of_wave
@@ -17,7 +17,8 @@ module mfv_resolution
    use mfv_slip_zones, only: contact_interval, hidden_width_at_edge, is_narrow_stick_zone, needed_mesh, nodes_at_edge, &
                              resolved_nodes, slip_record_type
    use mfv_strings, only: has_word, to_text
-   use mfv_zone_edges, only: find_patches, find_zone_edges, is_beyond_corner, patch_type, rises_at_end, zone_edges_type, &
+   use mfv_tolerances, only: certified
+   use mfv_zone_edges, only: find_patches, find_zone_edges, held, is_beyond_corner, patch_type, rises_at_end, zone_edges_type, &
                              zone_type, zones_of
    implicit none
    private
@@ -85,7 +86,7 @@ contains
    pure recursive logical function is_unresolved(unresolved, name) result(is_there)
       type(unresolved_type), intent(in) :: unresolved(:)
       character(*), intent(in) :: name
-      character(len=21) :: group
+      character(len=36) :: group
       integer :: i
 
       is_there = .false.
@@ -121,7 +122,7 @@ contains
    !> dimensionless number its uncertain factor.
    pure function named_as(name)
       character(*), intent(in) :: name
-      character(len=21) :: named_as
+      character(len=36) :: named_as
 
       select case (name)
       case ('contact_centre')
@@ -146,11 +147,13 @@ contains
          named_as = 'dissipation'
       case ('lower_tension_x', 'upper_tension_x')
          named_as = name(:13)
-      case ('largest_lower_tension_x', 'largest_upper_tension_x')
-         named_as = name(:21)
       case default
          named_as = ''
-         if (index(name, 'largest_') == 1 .or. index(name, 'smallest_') == 1) named_as = 'extremes'
+         if (index(name, 'largest_') == 1 .or. index(name, 'smallest_') == 1) then
+            named_as = 'extremes'
+            ! Where it is.
+            if (any(name(len(name) - 1:) == ['_x', '_y'])) named_as = name(:len(name) - 2)
+         end if
          associate (ending => name(index(name, '_', back=.true.) + 1:))
             if (any([character(9) :: 'loading', 'reversal', 'return', 'amplitude'] == ending) .or. &
                 name == 'first_cycle_dissipation' .or. name == 'permanent_stick_length') named_as = 'turning_points'
@@ -577,13 +580,64 @@ contains
          zones = zones_of(holds(status))
          zones = pack(zones, [(is_narrow_stick_zone(status, zones(i)), i=1, size(zones))])
          names = adjustl(trim(largest_tensions(simulation))//peaks_near(zones))
-         if (size(zones) == 0 .or. names == '') return
-         nodes = zones(1)%last - zones(1)%first + 1
-         call add_unresolved(unresolved, names, 'near x = '//to_text(model%x(zones(1)%first), 4)//' a stick zone between '// &
-                           'opposite slip has only '//to_text(nodes)//trim(merge(' node ', ' nodes', nodes == 1)), 'use more nodes')
+         if (size(zones) > 0 .and. names /= '') then
+            nodes = zones(1)%last - zones(1)%first + 1
+            call add_unresolved(unresolved, names, 'near x = '//to_text(model%x(zones(1)%first), 4)//' a stick zone between '// &
+                                'opposite slip has only '//to_text(nodes)//trim(merge(' node ', ' nodes', nodes == 1)), &
+                                'use more nodes')
+         end if
+         call check_jumps()
+         call check_narrow_zones()
       end associate
 
    contains
+
+      !> Where slip was opposite and one side sticks now, the shear still changes its sign within a node or two: without the stick
+      !> zone that was there the tension has no limit.
+      subroutine check_jumps()
+         real(wp), parameter :: nearly = 0.5_wp
+         integer, parameter :: reach = 2
+         integer :: node, next
+
+         names = adjustl(largest_tensions(simulation))
+         if (names == '') return
+         associate (model => simulation%contact%model, state => simulation%contact%state)
+            associate (limit => model%static_friction*state%fields%pressure, shear => state%fields%shear)
+               do node = 1, model%nodes() - 1
+                  do next = node + 1, min(node + reach, model%nodes())
+                     if (.not. all(in_contact(state%status(node:next))) .or. shear(node)*shear(next) >= 0.0_wp) cycle
+                     if (abs(shear(node)) < nearly*limit(node) .or. abs(shear(next)) < nearly*limit(next)) cycle
+                     call add_unresolved(unresolved, names, 'near x = '//to_text(model%x(node), 4)//' the shear changes its '// &
+                                         'sign within '//to_text(next - node)//trim(merge(' interval ', ' intervals', &
+                                                                                          next == node + 1)), 'use more nodes')
+                     return
+                  end do
+               end do
+            end associate
+         end associate
+      end subroutine check_jumps
+
+      !> One of several stick zones that has one or two nodes may not be there on another mesh.
+      subroutine check_narrow_zones()
+         integer, parameter :: most = 2
+         integer :: i
+
+         associate (model => simulation%contact%model)
+            zones = zones_of(held(simulation%contact%state))
+            if (size(zones) < 2) return
+            do i = 1, size(zones)
+               nodes = zones(i)%last - zones(i)%first + 1
+               ! What ends with the mesh may go on at its other end.
+               if (nodes > most .or. zones(i)%first == 1 .or. zones(i)%last == model%nodes()) cycle
+               names = 'stick_zones'
+               if (i == 1) names = names//' stick_left left_slip_zone'
+               if (i == size(zones)) names = names//' stick_right right_slip_zone'
+               call add_unresolved(unresolved, names, 'near x = '//to_text(model%x(zones(i)%first), 4)//' one of '// &
+                                   to_text(size(zones))//' stick zones has only '//to_text(nodes)// &
+                                   trim(merge(' node ', ' nodes', nodes == 1)), 'use more nodes')
+            end do
+         end associate
+      end subroutine check_narrow_zones
 
       !> Names of the peaks, after blanks, if the pressure is largest in or next to one of the zones: with full coupling the jump of
       !> the shear gives the pressure a logarithm there.
@@ -609,12 +663,24 @@ contains
       if (simulation%cycle_count == 0) return
       associate (cycle => simulation%cycles(simulation%cycle_count))
          if (cycle%dissipation() >= least_part*cycle%first_dissipation) return
+         if (.not. cycle%first_dissipation > certified*size_of_works()) return
          names = 'largest_slip_range stick_ratio_reversal smallest_stick_ratio permanent_stick_length'
          if (cycle%dissipation() > 0.0_wp) names = trim(names)//' stick_ratio stick_ratio_return largest_stick_ratio'
          call add_unresolved(unresolved, trim(names), 'the slip vanishes from cycle to cycle: the last one dissipates '// &
                              to_text(cycle%dissipation()/cycle%first_dissipation, 2)//' of the first one', &
                              'whether nodes still slip depends on the mesh')
       end associate
+
+   contains
+
+      !> The largest traction over the contact times the largest motion, force: nothing slips where the work of friction is
+      !> round-off of this.
+      real(wp) function size_of_works()
+         associate (path => simulation%contact, motion => simulation%contact%state%fields%motion)
+            size_of_works = path%certificate%traction_scale*sum(path%model%width, mask=in_contact(path%state%status)) &
+                            *maxval(abs(motion([motion_approach, motion_shift, motion_interference])))
+         end associate
+      end function size_of_works
    end subroutine check_shakedown
 
    !> Creepage, a mean over some intervals, while it changes.
@@ -639,11 +705,12 @@ contains
       associate (model => simulation%contact%model, state => simulation%contact%state)
          if (.not. model%scene%wear%acts() .or. simulation%cycle_count == 0) return
          if (state%coarsely_worn > most*model%force(state%worn)) &
-            call add_unresolved(unresolved, 'peak_pressure peak_shear extremes worn_area wear_depth', 'most of the wear is '// &
-                                'from cycles that each change the pressures by much', 'use a smaller coefficient and more cycles')
+            call add_unresolved(unresolved, 'peak_pressure peak_shear stick_ratio extremes worn_area wear_depth'// &
+                                tensions(simulation), 'most of the wear is from cycles that each change the pressures by '// &
+                                'much', 'use a smaller coefficient and more cycles')
          if (pressure_at_worn_kink(model, state) > sharp*maxval(state%fields%pressure)) &
-            call add_unresolved(unresolved, 'peak_pressure peak_shear extremes', 'the worn part of the surface ends within few '// &
-                                'intervals where the pressure is large', 'use more nodes')
+            call add_unresolved(unresolved, 'peak_pressure peak_shear extremes'//tensions(simulation), 'the worn part of the '// &
+                                'surface ends within few intervals where the pressure is large', 'use more nodes')
       end associate
    end subroutine check_worn_shape
 

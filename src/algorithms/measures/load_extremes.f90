@@ -39,12 +39,15 @@ module mfv_load_extremes
    !> Extremes that differ by less, relative to their values, are equal: the first row counts.
    real(wp), parameter :: round_off = significant
 
-   !> A value, its place (x and y, lengths) and its row, see load_extremes_type; 0: none yet.
+   !> A value, its place (x and y, lengths) and its row, see load_extremes_type; 0: none yet. Of a tension also the largest one at
+   !> another place, farther than an interval, of any row.
    type :: extreme_type
       real(wp) :: value = 0.0_wp, x = 0.0_wp, y = 0.0_wp
       integer :: row = 0
+      real(wp) :: rival = -huge(1.0_wp), rival_x = 0.0_wp
    contains
       procedure :: raise
+      procedure :: compete
    end type extreme_type
 
    !> Extremes since the start of a stretch. A row is the number of the step, of the turning point in the cycle, or of the row of
@@ -107,6 +110,17 @@ contains
       if (present(x)) self%x = x
       if (present(y)) self%y = y
    end subroutine raise
+
+   !> Keep the largest of a value and the present rival as the rival, if farther than `interval` from the place of the extreme.
+   pure subroutine compete(self, value, x, interval)
+      class(extreme_type), intent(inout) :: self
+      real(wp), intent(in) :: value, x, interval
+
+      if (.not. abs(self%rival_x - self%x) > interval) self%rival = -huge(1.0_wp)
+      if (.not. (abs(x - self%x) > interval .and. value > self%rival)) return
+      self%rival = value
+      self%rival_x = x
+   end subroutine compete
 
    !> Whether an extreme has been found in this state, the last one.
    pure logical function is_of(self, extreme, state)
@@ -327,7 +341,9 @@ contains
          associate (stress => bulk + surface_stress_of(body%elasticity%material, samples%pressure, sign*samples%shear, &
                                                        samples%of_pressure, sign*samples%of_shear))
             if (model%scene%is_neat()) then
-               estimates(candidate_tension(side)) = max(maxval(hoop_stress(body) + stress), 0.0_wp)
+               ! A difference of larger stresses.
+               estimates(candidate_tension(side)) = max(maxval(hoop_stress(body) + stress), 0.0_wp) + &
+                                                    between*maxval(state%fields%pressure)
             else
                estimates(candidate_tension(side)) = hoop + max(max(bulk, 0.0_wp) + between*maxval(abs(state%fields%shear)), &
                                                                maxval(stress))
@@ -344,12 +360,14 @@ contains
       type(contact_state_type), intent(in) :: state
       type(patch_type), intent(in) :: patches(:)
       type(surface_samples_type), intent(out) :: samples
-      integer, parameter :: most_between = 12
+      !> Of a fit, whose stress is largest anywhere around the circle, more.
+      integer, parameter :: between = 12, around = 60
       logical :: is_sample(model%nodes())
       integer, allocatable :: nodes(:)
       complex(wp), allocatable :: integrals(:)
-      integer :: i, j
+      integer :: most_between, i, j
 
+      most_between = merge(around, between, model%scene%is_neat())
       is_sample = .false.
       do i = 1, size(patches)
          associate (patch => patches(i))

@@ -9,17 +9,18 @@
 !> If friction is not linear (Dahl, weakening), a predictor with tangents is followed by a corrector (Newton) until the friction
 !> lines agree with the end of the increment; for Dahl's law this is the implicit midpoint rule, of second order. The difference of
 !> predictor and corrector estimates a first-order error. The increment is shortened until it is within the method's
-!> `allowed_in_friction`, so that the error of the result decreases with the tolerance.
+!> `allowed_in_friction`, so that the error of the result decreases with the tolerance, and until the work of friction is as
+!> accurate: where bristles are stiffer than the bodies, tractions are accurate long before their work is.
 module mfv_increment
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path, only: contact_path_type
    use mfv_contact_system
-   use mfv_friction_law, only: friction_event_type
+   use mfv_friction_law, only: friction_event_type, friction_point_type, friction_row_type
    use mfv_inequalities, only: find_violations, violations_type
    use mfv_kinds, only: wp
-   use mfv_motions, only: motion_shift
+   use mfv_motions, only: motion_approach, motion_interference, motion_shift
    use mfv_node_status
-   use mfv_scene, only: integration_explicit, stepping_nominal
+   use mfv_scene, only: friction_tolerance_part, integration_explicit, stepping_nominal
    use mfv_tolerances, only: certified, rounding, significant, visible
    implicit none
    private
@@ -144,8 +145,8 @@ contains
       real(wp), parameter :: safety = 0.9_wp, most_growth = 4.0_wp, least_shrink = 0.1_wp, first_trial = 1.0e-3_wp, &
                              shortest = 1.0e-9_wp
       type(increment_type) :: predicted
-      type(contact_fields_type) :: guess
-      real(wp) :: length, error, change, tolerance
+      type(contact_fields_type) :: guess, after
+      real(wp) :: length, error, error_of_work, change, tolerance
       logical :: agrees, accepted, touched, misled, law_sticks
       integer :: attempt
 
@@ -168,15 +169,17 @@ contains
          if (increment%singular) return
          guess = path%state%fields%plus(increment%step, predicted%response%rate)
          call guess_touching(path, guess)
-         error = difference(path, guess, path%state%fields%plus(increment%step, increment%response%rate), &
-                            maxval(abs(increment%response%rate%pressure)))
+         after = path%state%fields%plus(increment%step, increment%response%rate)
+         error = difference(path, guess, after, maxval(abs(increment%response%rate%pressure)))
+         error_of_work = missed_work(path, after, increment)/(path%model%scene%method%allowed_in_friction()/friction_tolerance_part)
          change = most_growth
          if (error > 0.0_wp) change = min(most_growth, safety*sqrt(tolerance/error))
+         if (error_of_work > 0.0_wp) change = min(change, safety/sqrt(error_of_work))
          if (.not. agrees) change = min(change, 0.25_wp)
          ! The tangents allow a step: an event before any is due to the length.
          misled = agrees .and. law_sticks .and. has_no_length(path, increment) .and. .not. (touched .or. length < shortest)
          if (misled) change = least_shrink
-         accepted = agrees .and. error <= tolerance .and. .not. misled
+         accepted = agrees .and. error <= tolerance .and. error_of_work <= 1.0_wp .and. .not. misled
          if (accepted .or. length < shortest) exit
          ! The error is that of the step, and an event may have ended this far before the length.
          if (agrees .and. .not. has_no_length(path, increment)) length = min(length, increment%step)
@@ -192,6 +195,47 @@ contains
       length = max(length, increment%step)*max(change, least_shrink)
       path%trial = max(length, merge(path%trial, 10*shortest, attempt == 1))
    end subroutine integrate_friction
+
+   !> Error of the work of creeping nodes over an increment to the fields `after`, relative to its part of what they dissipate over
+   !> the whole segment at the present rates: (1 - K/sigma) f ds with the stiffness K = df/ds and its value sigma at f = 0. The work
+   !> on straight lines lacks (slip)^2/12 times the change of K (Euler and Maclaurin), which the law knows at both ends.
+   real(wp) function missed_work(path, after, increment) result(missed)
+      class(contact_path_type), intent(in) :: path
+      type(contact_fields_type), intent(in) :: after
+      type(increment_type), intent(in) :: increment
+      type(friction_point_type) :: points(3)
+      type(friction_row_type) :: rows(3)
+      real(wp) :: slip(size(path%state%status)), work, force, largest
+      integer :: i, j
+
+      slip = increment%response%rate%slip()
+      missed = 0.0_wp
+      work = 0.0_wp
+      if (increment%step*maxval(abs(slip)) <= certified*size_of_displacements(after)) return
+      do i = 1, size(slip)
+         if (.not. creeps(path%state%status(i))) cycle
+         points = [path%point(i, path%state%fields), path%point(i, after), path%point(i, after)]
+         points(3)%shear = 0.0_wp
+         rows = [(path%model%scene%friction%law%row(path%state%status(i), points(j), points(j)), j=1, size(rows))]
+         associate (stiffness => rows%stiffness, width => path%model%width(i))
+            force = maxval(abs(points%shear))
+            largest = max(force, 0.5_wp*abs(increment%response%rate%shear(i)))
+            if (.not. force > 0.0_wp) cycle
+            missed = missed + width*(increment%step*slip(i))**2*abs(stiffness(2) - stiffness(1))/12.0_wp
+            work = work + width*abs(slip(i))*largest*min(maxval(abs(stiffness(:2) - stiffness(3)))/abs(stiffness(3)) &
+                                                         *largest/force, 1.0_wp)
+         end associate
+      end do
+      if (missed > 0.0_wp) missed = missed/max(increment%step*work, tiny(1.0_wp))
+   end function missed_work
+
+   !> The largest displacement or motion of some fields, length.
+   pure real(wp) function size_of_displacements(fields) result(largest)
+      type(contact_fields_type), intent(in) :: fields
+
+      largest = max(maxval(abs(fields%tangential)), maxval(abs(fields%normal)), &
+                    maxval(abs(fields%motion([motion_approach, motion_shift, motion_interference]))))
+   end function size_of_displacements
 
    !> Whether an increment of the trial length `length` was shortened by a violation that, with the rates of the shorter one, is far
    !> beyond its end. Friction over the longer one differed too much: others of this length would end too early again and again.
@@ -270,18 +314,19 @@ contains
       end do
    end subroutine find_end
 
-   !> Whether two fields have the same slip since the start of the increment. (Where all other nodes slide, equilibrium gives the
-   !> traction of the last one, and the slip follows from its law alone.)
+   !> Whether two fields have the same slip since the start of the increment, to a part of it or to the rounding errors of the
+   !> displacements. (Where all other nodes slide, equilibrium gives the traction of the last one, and the slip follows from its law
+   !> alone.)
    logical function have_same_slip(path, one, other)
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(in) :: one, other
-      real(wp) :: change, scale
+      real(wp) :: change
 
       associate (start => path%state%fields%slip())
          change = maxval(abs(other%slip() - start))
-         scale = max(maxval(abs(other%tangential)), abs(other%motion(motion_shift)))
       end associate
-      have_same_slip = maxval(abs(one%slip() - other%slip())) <= max(certified, path%system%tolerance)*change + rounding*scale
+      have_same_slip = maxval(abs(one%slip() - other%slip())) <= max(certified, path%system%tolerance)*change + &
+                       rounding*size_of_displacements(other)
    end function have_same_slip
 
    !> A guess for creeping nodes that have just touched: at most half the friction limit.

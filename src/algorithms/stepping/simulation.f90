@@ -15,8 +15,9 @@ module mfv_simulation
    use mfv_error_bar, only: error_estimate_type
    use mfv_frictionless, only: apply_directly
    use mfv_kinds, only: wp
-   use mfv_load_extremes, only: add_estimate, candidate_count, candidate_tension, candidate_von_mises, is_same_estimate, &
-                                load_extremes_type, most_rows, over_cycle, over_rows, over_steps, slip_range_type
+   use mfv_load_extremes, only: add_estimate, candidate_count, candidate_tension, candidate_von_mises, extreme_type, &
+                                is_same_estimate, load_extremes_type, most_rows, over_cycle, over_rows, over_steps, &
+                                slip_range_type
    use mfv_leap, only: apply_by_large_increments
    use mfv_load_summary, only: load_summary_type
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, motion_wear, control_keep, &
@@ -952,11 +953,12 @@ contains
       integer, intent(in) :: first, candidate
       type(load_extremes_type), intent(inout) :: extremes
       type(largest_type) :: largest
+      type(extreme_type) :: before
       logical :: available, is_left(most_rows)
       integer :: i, number
 
       associate (found => extremes%searched(candidate), estimates => extremes%estimate(:, candidate))
-         found%row = 0
+         found = extreme_type()
          is_left = extremes%row(:, candidate) > 0
          do number = 1, count(is_left)
             i = maxloc(estimates, dim=1, mask=is_left)
@@ -968,7 +970,13 @@ contains
             end if
             call find_largest(self%padded(self%marks(first + i - 1)))
             if (.not. available) exit
+            before = found
             call found%raise(largest%value, extremes%row(i, candidate), largest%x, largest%y)
+            associate (interval => self%contact%model%interval())
+               if (before%row > 0) call found%compete(before%value, before%x, interval)
+               call found%compete(largest%value, largest%x, interval)
+               call found%compete(largest%rival, largest%rival_x, interval)
+            end associate
          end do
       end associate
 
