@@ -124,9 +124,9 @@ def test_every_cycle_has_its_edges(coupled: bool) -> None:
         assert list(cycles[f"{side}_shear_intensity_reversal"]) == pytest.approx([-2.0 * K_T] * 3, rel=error)
         assert list(cycles[f"{side}_shear_intensity_return"]) == pytest.approx([2.0 * K_T] * 3, rel=error)
         assert list(cycles[f"{side}_normal_intensity_reversal"]) == pytest.approx([K_N] * 3, rel=max(error, 1e-4))
-        for name in ("normal_intensity", "shear_intensity", "slip_zone", "asymptotic_slip_zone"):
+        for name in ("normal_intensity", "shear_intensity", "slip_zone"):
             assert cycles[f"{side}_{name}_return"][-1] == pytest.approx(end[f"{side}_{name}"], rel=1e-9)
-    assert "left_corner_intensity_return" not in cycles
+    assert not {"left_corner_intensity_return", "left_asymptotic_slip_zone_return"} & set(cycles)
 
 
 def test_noise_of_the_normal_force_is_no_turning_point() -> None:

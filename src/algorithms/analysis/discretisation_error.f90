@@ -62,6 +62,7 @@ contains
       real(wp), allocatable :: values(:, :), allowances(:, :)
       integer, allocatable :: nodes(:)
       type(unresolved_type), allocatable :: unresolved(:)
+      type(observed_type) :: observed
       integer :: place
 
       estimate%nodes = simulation%contact%model%scene%mesh%nodes
@@ -69,8 +70,11 @@ contains
       estimate%doubt = ''
       allocate (estimate%coarser_nodes(0), estimate%bar(observable_count))
       call choose_coarser_meshes(simulation, nodes, estimate)
-      if (estimate%message == '') call find_unresolved(simulation, unresolved)
-      if (estimate%message == '') call solve_coarser_meshes(simulation, nodes, values, allowances, unresolved, estimate, observer)
+      if (estimate%message == '') then
+         call find_unresolved(simulation, unresolved)
+         observed = observe(simulation)
+         call solve_coarser_meshes(simulation, observed%values, nodes, values, allowances, unresolved, estimate, observer)
+      end if
       if (estimate%message == '') then
          estimate%coarser_nodes = nodes(2:)
          do place = 1, observable_count
@@ -96,23 +100,23 @@ contains
             if (peak_is_at_corner(simulation, place, values(:, 1))) estimate%bar(place) = logarithmic_bar(values(place, :))
          end do
          call drop_uncertain_places(values, estimate%bar)
-         if (simulation%contact%model%tangential) call add_rivals(simulation, estimate%bar)
+         if (simulation%contact%model%tangential) call add_rivals(simulation, observed%extremes, estimate%bar)
       end if
       simulation%estimate = estimate
    end subroutine estimate_error
 
    !> The largest tension may be at another place where one is as large within their bars, as at both edges of a contact: its
-   !> distance is added to the bars of places. `bars`: shape (observable_count).
-   subroutine add_rivals(simulation, bars)
+   !> distance is added to the bars of places. `extremes`: see find_extremes; `bars`: shape
+   !> (observable_count).
+   subroutine add_rivals(simulation, extremes, bars)
       type(simulation_type), intent(in) :: simulation
+      type(load_extremes_type), intent(in) :: extremes
       type(error_bar_type), intent(inout) :: bars(:)
       character(*), parameter :: body(2) = ['lower', 'upper']
-      type(load_extremes_type) :: extremes
       type(largest_type) :: largest
       logical :: available
       integer :: side
 
-      call simulation%find_extremes(extremes)
       do side = 1, size(body)
          associate (found => extremes%searched(candidate_tension(side)))
             call add('largest_'//body(side)//'_tension', largest_type(found%value, found%x, found%y, found%rival, found%rival_x))
@@ -317,10 +321,12 @@ contains
       fits = abs(intervals - anint(intervals)) <= significant*intervals
    end function fits
 
-   !> Solve the scene on the coarser meshes. `values`, `allowances`: every quantity on every mesh, shape (observable_count,
-   !> size(nodes)). `unresolved`: nothing can be estimated from a mesh that misses contact patches, or points of a profile.
-   subroutine solve_coarser_meshes(simulation, nodes, values, allowances, unresolved, estimate, observer)
+   !> Solve the scene on the coarser meshes. `finest`: the observables of the simulation; `values`, `allowances`: on every
+   !> mesh, shape (observable_count, size(nodes)). `unresolved`: nothing can be estimated from a mesh that misses contact patches, or
+   !> points of a profile.
+   subroutine solve_coarser_meshes(simulation, finest, nodes, values, allowances, unresolved, estimate, observer)
       type(simulation_type), intent(in) :: simulation
+      real(wp), intent(in) :: finest(:)
       integer, intent(in) :: nodes(:)
       real(wp), allocatable, intent(out) :: values(:, :), allowances(:, :)
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
@@ -335,8 +341,7 @@ contains
       before = size(unresolved)
       other_zones = .false.
       allocate (values(observable_count, size(nodes)), allowances(observable_count, size(nodes)))
-      observed = observe(simulation)
-      values(:, 1) = observed%values
+      values(:, 1) = finest
       allowances(:, 1) = interval_allowances(simulation, values(:, 1))
       if (present(observer)) watch%caller => observer
       watch%runs = size(nodes) - 1

@@ -718,7 +718,8 @@ call list%add('contact_right', simulation%contact%model%scene%x_of_arc(patches%r
                     'dissipated in the last cycle per unit of surface')
    end subroutine add_cycles
 
-   !> The outermost edges at turning points, with the names of the observables and a suffix, as far as defined; `moment`: what these
+   !> The outermost edges at turning points, with the names of the observables and a suffix, as far as defined,
+   !> without what says how far the asymptotes hold; `moment`: what these
    !> are.
    subroutine add_cycle_edges(list, points, suffix, moment)
       type(list_type), intent(inout) :: list
@@ -733,7 +734,7 @@ call list%add('contact_right', simulation%contact%model%scene%x_of_arc(patches%r
       subroutine add(side, edges)
          character(*), intent(in) :: side
          type(edge_field_type), intent(in) :: edges(:)
-         character(*), parameter :: of_state(2) = [character(13) :: 'edge_reach', 'edge_exponent']
+         character(*), parameter :: of_state(3) = [character(20) :: 'asymptotic_slip_zone', 'edge_reach', 'edge_exponent']
          real(wp) :: values(size(edge_quantities), size(edges))
          character(:), allocatable :: meaning
          integer :: i, place
