@@ -322,8 +322,8 @@ contains
    end function fits
 
    !> Solve the scene on the coarser meshes. `finest`: the observables of the simulation; `values`, `allowances`: on every
-   !> mesh, shape (observable_count, size(nodes)). `unresolved`: nothing can be estimated from a mesh that misses contact patches, or
-   !> points of a profile.
+   !> mesh, shape (observable_count, size(nodes)). `unresolved`: nothing can be estimated from a mesh that misses contact patches
+   !> or points of a profile.
    subroutine solve_coarser_meshes(simulation, finest, nodes, values, allowances, unresolved, estimate, observer)
       type(simulation_type), intent(in) :: simulation
       real(wp), intent(in) :: finest(:)

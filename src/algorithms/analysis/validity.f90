@@ -28,8 +28,8 @@ module mfv_validity
 contains
 
    !> Warnings about a simulation, with what is observed in it: what its mesh does not resolve; contact at large angles, or beyond a
-   !> datum; surfaces that end, are steep or are uncertain between points; yield; large rotations; wear of much at once; lost digits;
-   !> an accuracy beyond that of the mesh.
+   !> datum; surfaces that end, are steep or are uncertain between points; yield; large rotations; wear of much at once; lost
+   !> digits; an accuracy beyond that of the mesh.
    subroutine validity_warnings(simulation, observed, warnings)
       type(simulation_type), intent(in) :: simulation
       type(observed_type), intent(in) :: observed

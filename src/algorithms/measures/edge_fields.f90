@@ -62,8 +62,8 @@ contains
       edge = edge_field_type(none, none, none, none, none, none, none)
    end function undefined_edge
 
-   !> The left and right edge of every patch of a state, shape (2, patches). `system`: a solver of its model; `load`: the controls of
-   !> the loads; `before`: the state at their last turning point, if there is one.
+   !> The left and right edge of every patch of a state, shape (2, patches). `system`: a solver of its model; `load`: controls
+   !> of the loads; `before`: the state at their last turning point, if there is one.
    function edge_fields_of(model, system, state, load, patches, before) result(edges)
       type(contact_model_type), intent(in) :: model
       class(contact_system_type), intent(in) :: system

@@ -182,8 +182,8 @@ contains
       if (width < visible*model%width(edge) .or. width > widest_hidden*model%width(edge)) width = 0.0_wp
    end function hidden_width_at_edge
 
-   !> Add the load segment from `start` to `state`. `changes`: of the loads, see turns_with; `nodes`: largest number of nodes in a slip zone on
-   !> it. `tolerance`: relative tolerance of the linear solver.
+   !> Add the load segment from `start` to `state`. `changes`: of the loads, see turns_with; `nodes`: largest number of nodes
+   !> in a slip zone on it. `tolerance`: relative tolerance of the linear solver.
    subroutine add_segment(self, model, start, state, changes, nodes, tolerance)
       class(slip_record_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -225,7 +225,8 @@ contains
       self%width = self%width + width*work
    end subroutine add_segment
 
-   !> Whether loads with these changes, as tangential forces, do not all go on in their directions: the last segments end at a turning point.
+   !> Whether loads with these changes, as tangential forces, do not all go on in their directions: the last segments end at a
+   !> turning point.
    pure logical function turns_with(self, changes)
       class(slip_record_type), intent(in) :: self
       real(wp), intent(in) :: changes(motion_count)

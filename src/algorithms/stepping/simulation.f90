@@ -848,8 +848,8 @@ contains
       end associate
    end function edge_fields
 
-   !> Add the outermost edges of the present state to its turning point; not where the surfaces wear, whose edges are as fine as what
-   !> wears away in a cycle, nor of coupled bodies, whose edges are known at one of both ends only: where they slip.
+   !> Add the outermost edges of the present state to its turning point; not where the surfaces wear, whose edges are as fine as
+   !> what wears away in a cycle, nor of coupled bodies, whose edges are known at one of both ends only: where they slip.
    subroutine add_edge_fields(self, point)
       class(simulation_type), intent(in) :: self
       type(turning_point_type), intent(inout) :: point

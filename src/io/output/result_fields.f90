@@ -719,8 +719,7 @@ call list%add('contact_right', simulation%contact%model%scene%x_of_arc(patches%r
    end subroutine add_cycles
 
    !> The outermost edges at turning points, with the names of the observables and a suffix, as far as defined,
-   !> without what says how far the asymptotes hold; `moment`: what these
-   !> are.
+   !> without what says how far the asymptotes hold; `moment`: what these are.
    subroutine add_cycle_edges(list, points, suffix, moment)
       type(list_type), intent(inout) :: list
       type(turning_point_type), intent(in) :: points(:)
