@@ -20,6 +20,9 @@ module mfv_geometry
    !> Interpolation of a profile: linear by default; linear or monotone cubic by choice, in the order of the key.
    integer, parameter :: interpolation_unset = 0, interpolation_linear = 1, interpolation_cubic = 2
 
+   !> A point of a profile is at the end of a period within this part of it.
+   real(wp), parameter :: at_end = 1.0e-9_wp
+
    !> A surface. Lengths by default.
    type :: geometry_type
       integer :: shape = shape_half_plane
@@ -39,6 +42,8 @@ module mfv_geometry
       integer :: interpolation = interpolation_unset
       !> Profile: points of the measurement without a value, which are not in it.
       integer :: dropouts = 0
+      !> The surface repeats after this length; 0: it does not.
+      real(wp) :: period = 0.0_wp
    contains
       procedure :: has_surface
       procedure :: recess
@@ -54,6 +59,7 @@ module mfv_geometry
       procedure :: half_extent
       procedure :: size_of_shape
       procedure :: from_polyline
+      procedure :: get_points
    end type geometry_type
 
 contains
@@ -318,24 +324,61 @@ contains
       real(wp), intent(in) :: x(:)
       integer, intent(in) :: interpolation
       real(wp) :: heights(size(x))
+      real(wp), allocatable :: position(:), height(:)
       type(c_ptr) :: interpolant
       integer(c_size_t) :: points
       integer(c_int) :: code
-      integer :: i
+      integer :: i, n
 
       heights = 0.0_wp
-      points = size(self%position, kind=c_size_t)
+      position = self%position
+      height = self%height
+      if (interpolation == interpolation_cubic .and. closes(self)) then
+         ! One point of the neighbouring periods: else the slope would jump where they meet.
+         n = size(position)
+         position = [position(1) - (position(n) - position(n - 1)), position, position(n) + (position(2) - position(1))]
+         height = [height(n - 1), height, height(2)]
+      end if
+      points = size(position, kind=c_size_t)
       if (interpolation == interpolation_cubic) then
          interpolant = gsl_interp_alloc(gsl_interp_steffen, points)
       else
          interpolant = gsl_interp_alloc(gsl_interp_linear, points)
       end if
-      code = gsl_interp_init(interpolant, self%position, self%height, points)
+      code = gsl_interp_init(interpolant, position, height, points)
       do i = 1, size(x)
          if (.not. self%has_surface(x(i))) cycle
-         heights(i) = gsl_interp_eval(interpolant, self%position, self%height, x(i), c_null_ptr)
+         heights(i) = gsl_interp_eval(interpolant, position, height, x(i), c_null_ptr)
       end do
       call gsl_interp_free(interpolant)
    end function interpolated
+
+   !> Whether a profile ends where its next period begins.
+   pure logical function closes(self)
+      class(geometry_type), intent(in) :: self
+      real(wp), parameter :: equal = 1.0e-6_wp
+      integer :: n
+
+      n = size(self%position)
+      closes = self%period > 0.0_wp .and. abs(self%position(n) - self%position(1) - self%period) <= at_end*self%period .and. &
+               abs(self%height(n) - self%height(1)) <= equal*(maxval(self%height) - minval(self%height))
+   end function closes
+
+   !> The points of a profile, increasing positions and the recess there, lengths; if it repeats those of three periods, the middle
+   !> one around x = 0.
+   pure subroutine get_points(self, position, height)
+      class(geometry_type), intent(in) :: self
+      real(wp), allocatable, intent(out) :: position(:), height(:)
+      logical :: inside(size(self%position))
+
+      position = self%position
+      height = self%height
+      if (.not. self%period > 0.0_wp) return
+      inside = self%position >= -0.5_wp*self%period*(1.0_wp + at_end) .and. self%position < 0.5_wp*self%period*(1.0_wp - at_end)
+      position = pack(self%position, inside)
+      height = pack(self%height, inside)
+      position = [position - self%period, position, position + self%period]
+      height = [height, height, height]
+   end subroutine get_points
 
 end module mfv_geometry

@@ -22,29 +22,33 @@ contains
       real(wp), allocatable, intent(out) :: fraction(:), height(:)
       !> Points per interval that are not more than one, within rounding errors.
       real(wp), parameter :: one = 1.0_wp - 1.0e-6_wp
+      real(wp), allocatable :: position(:), heights(:)
       real(wp) :: at_nodes(size(x))
-      logical :: is_missed(size(body%position))
-      integer :: below(size(body%position)), i, k, points
+      logical, allocatable :: is_missed(:)
+      integer, allocatable :: below(:)
+      integer :: i, k, points
 
-      points = size(body%position)
+      call body%get_points(position, heights)
+      points = size(position)
       at_nodes = 0.0_wp
-      if (size(x) >= 4 .and. points >= 4) at_nodes = through(body%position, body%height, x)
-      is_missed = .false.
+      if (size(x) >= 4 .and. points >= 4) at_nodes = through(position, heights, x)
+      allocate (is_missed(points), source=.false.)
+      allocate (below(points), source=0)
       i = 1
       do k = 2, points - 1
-         if (body%position(k) < x(1) .or. min(size(x), points) < 4) cycle
+         if (position(k) < x(1) .or. min(size(x), points) < 4) cycle
          do while (i < size(x))
-            if (x(i + 1) > body%position(k)) exit
+            if (x(i + 1) > position(k)) exit
             i = i + 1
          end do
          if (i == size(x)) exit
          below(k) = i
-         is_missed(k) = 0.5_wp*(body%position(k + 1) - body%position(k - 1)) < one*(x(i + 1) - x(i))
+         is_missed(k) = 0.5_wp*(position(k + 1) - position(k - 1)) < one*(x(i + 1) - x(i))
       end do
       left = pack(below, is_missed)
-      height = pack(body%position, is_missed)
+      height = pack(position, is_missed)
       fraction = (height - x(left))/(x(left + 1) - x(left))
-      if (size(left) > 0) height = pack(body%height, is_missed) - through(x, at_nodes, height)
+      if (size(left) > 0) height = pack(heights, is_missed) - through(x, at_nodes, height)
    end subroutine find_missed
 
    !> Piecewise cubic interpolation of y at increasing `at`, each by the nearest four x; at least four, increasing.
@@ -90,16 +94,18 @@ contains
    pure real(wp) function largest_jump(body, x, width) result(jump)
       class(geometry_type), intent(in) :: body
       real(wp), intent(in) :: x, width
+      real(wp), allocatable :: position(:), height(:)
       real(wp) :: left, right, at_point
       integer :: k
 
       jump = 0.0_wp
       if (.not. body%is_sampled()) return
-      do k = 2, size(body%position) - 1
-         left = body%position(k) - body%position(k - 1)
-         right = body%position(k + 1) - body%position(k)
-         if (body%position(k) < x - max(width, right) .or. body%position(k) > x + max(width, left)) cycle
-         at_point = abs((body%height(k + 1) - body%height(k))/right - (body%height(k) - body%height(k - 1))/left)
+      call body%get_points(position, height)
+      do k = 2, size(position) - 1
+         left = position(k) - position(k - 1)
+         right = position(k + 1) - position(k)
+         if (position(k) < x - max(width, right) .or. position(k) > x + max(width, left)) cycle
+         at_point = abs((height(k + 1) - height(k))/right - (height(k) - height(k - 1))/left)
          if (body%interpolation == interpolation_cubic) at_point = at_point*min(1.0_wp, 2.0_wp*width/(left + right))**2
          jump = max(jump, at_point)
       end do

@@ -256,3 +256,19 @@ def test_what_does_not_repeat_is_refused(lower: Any, upper: Body, mesh: Any, ste
     )  # fmt: skip
     with pytest.raises(mfv.errors.InputError, match=what):
         scene.run()
+
+
+def test_a_smooth_profile_has_no_kink_where_periods_meet() -> None:
+    """A wave of few points, its crest where the periods meet or in the middle: the same pressures and warnings."""
+    found = []
+    for phase in (0.0, math.pi):
+        x = np.linspace(-PERIOD / 2, PERIOD / 2, 17)
+        height = HEIGHT * (1 - np.cos(2 * np.pi * x / PERIOD + phase))
+        upper = Body.profile(x, height - height.min(), rigid=True, interpolation="monotone_cubic")
+        steps = [Step(normal_force=0.5 * FULL * PERIOD)]
+        found.append(
+            Scene(Body.half_plane(**PLANE), upper, steps=steps, mesh=Mesh(nodes=320, period=PERIOD), coupling="none").run()
+        )
+    one, other = found
+    np.testing.assert_allclose(np.sort(one.state.pressure), np.sort(other.state.pressure), rtol=0, atol=1e-9 * FULL)
+    assert len(one.attributes["warnings"].splitlines()) == len(other.attributes["warnings"].splitlines()) > 0

@@ -133,12 +133,13 @@ contains
       !> With points further apart than the nodes the shape between them is uncertain.
       subroutine check_interpolation()
          real(wp), parameter :: further = 1.5_wp
-         real(wp), allocatable :: x(:), departure(:), spacing(:)
+         real(wp), allocatable :: x(:), departure(:), spacing(:), position(:), height(:)
          real(wp) :: share
 
          x = pack(simulation%contact%model%x, contact)
-         departure = abs(body%from_polyline(x))
-         spacing = spacing_at(body%position, x)
+         departure = abs(body%from_polyline(simulation%contact%model%scene%x_in_period(x)))
+         call body%get_points(position, height)
+         spacing = spacing_at(position, x)
          if (all(spacing <= further*pack(simulation%contact%model%width, contact))) return
          associate (model => simulation%contact%model, pressure => simulation%contact%state%fields%pressure)
             if (model%scene%modulus() > 0.0_wp .and. maxval(pressure) > 0.0_wp) then
@@ -207,13 +208,14 @@ contains
    pure integer function corners_under(body, x) result(corners)
       type(body_type), intent(in) :: body
       real(wp), intent(in) :: x(:)
-      real(wp), allocatable :: slope(:)
+      real(wp), allocatable :: slope(:), position(:), height(:)
       integer :: i, n
 
-      n = size(body%position)
-      slope = (body%height(2:) - body%height(:n - 1))/(body%position(2:) - body%position(:n - 1))
+      call body%get_points(position, height)
+      n = size(position)
+      slope = (height(2:) - height(:n - 1))/(position(2:) - position(:n - 1))
       corners = count([(abs(slope(i) - slope(i - 1)) > significant*maxval(abs(slope)) .and. &
-                        body%position(i) > minval(x) .and. body%position(i) < maxval(x), i=2, n - 1)])
+                        position(i) > minval(x) .and. position(i) < maxval(x), i=2, n - 1)])
    end function corners_under
 
 end module mfv_surface_warnings

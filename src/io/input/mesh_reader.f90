@@ -167,6 +167,8 @@ contains
             return
          end associate
       end do
+      scene%lower%period = scene%mesh%period
+      scene%upper%period = scene%mesh%period
       if (.not. scene%lower%rigid) scene%lower%elasticity%period = scene%mesh%period
       if (.not. scene%upper%rigid) scene%upper%elasticity%period = scene%mesh%period
    end subroutine read_period
