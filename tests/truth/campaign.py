@@ -15,13 +15,15 @@ from mfv import errors
 from .generate import describe, problem
 from .problem import Problem
 from .relations import relations
-from .truth import truth_of
+from .truth import FINER, truth_of
 from .verdict import GROUPS, RIGHT, WORDS, flagged_quantities, judge, public_name
 
 #: Relations tried with one problem.
 RELATIONS_OF_ONE = 2
 #: Largest certificate of a complete run without a warning; iterations and laws with a tolerance have a larger one.
 CERTIFICATE = 1.0e-8
+#: Nodes of the truth beyond which a run would be given up (MOST_WORK) after a few increments.
+MOST_NODES = 30_000
 #: More nodes than this in contact are needed for a problem to be ordinary.
 ORDINARY_NODES = 30
 
@@ -83,6 +85,9 @@ def _related(made: Problem, base: mfv.Result, seed: int) -> dict[str, dict[str, 
 
 
 def _judge(made: Problem, base: mfv.Result, found: dict[str, Any]) -> None:
+    if FINER[0] * len(base.mesh.x) > MOST_NODES:
+        found["fate"] = "too long"
+        return
     truth = truth_of(made, base)
     fine = (truth.coarser.outcome, truth.finer.outcome)
     found["fine outcomes"] = fine

@@ -21,8 +21,12 @@ from .problem import Problem
 FINER = (6, 8)
 #: Accuracy of the large increments of the finer one of them.
 ACCURACY = 1.0e-4
+#: Tolerance of increments of Dahl's law, which both meshes would else share with the problem: a fifth of that by default.
+FRICTION_TOLERANCE = 2.0e-5
 #: Nodes up to which it has events, too.
 MOST_FOR_EVENTS = 400
+#: Nodes up to which the coarser one of them is solved with a matrix.
+MOST_FOR_MATRIX = 10_000
 #: Fewest intervals on the equal mesh in place of unequal ones.
 EQUAL = 10
 
@@ -83,14 +87,15 @@ def _fix_cycles(made: Problem, base: mfv.Result) -> None:
 
 def _solve_otherwise(made: Problem, number: int) -> None:
     """Another linear solver than the problem's, events; large increments on the second mesh under Coulomb's law."""
-    old = dict(made.one("solver"))
     keys = made.one("solver")
     keys.clear()
-    if "friction_tolerance" in old:
-        keys["friction_tolerance"] = old["friction_tolerance"]
+    if made.has("friction") and made.one("friction")["law"] == "dahl":
+        keys["friction_tolerance"] = FRICTION_TOLERANCE
     keys["stepping"] = "event"
     if number == 0:
-        keys["linear_solver"] = "reduced"
+        # By default it is another one there, too, and needs no matrix.
+        if made.one("mesh").get("nodes", 0) <= MOST_FOR_MATRIX:
+            keys["linear_solver"] = "reduced"
     elif (
         made.one("mesh").get("nodes", 0) > MOST_FOR_EVENTS
         and made.has("friction")

@@ -32,11 +32,11 @@ GROUPS = ("summary", "observables", "cycles", "patches")
 #: What is not a number of the problem: counts of nodes and of work, numbers of cycles and blocks.
 SKIPPED = WORK | NUMBERS | TIED | {"contact_nodes", "patch", "cycle", "cycles", "block", "friction_work"}
 #: Zones, and gaps between them, narrower than this many intervals of the mesh are not resolved, as the descriptions of the numbers of
-#: zones and patches say: statuses in them by names of numbers, and of edges of the outermost ones.
+#: zones and patches say: statuses in them by names of numbers, of edges of the outermost ones, and of slip zones next to these.
 NARROW = 2.0
 _ZONES = {
     r"patches": tuple(status for status in NodeStatus if status != NodeStatus.OPEN),
-    r"stick_(zones|left|right)": (NodeStatus.STICK, NodeStatus.CREEP_RIGHT, NodeStatus.CREEP_LEFT),
+    r"stick_(zones|left|right)|(left|right)_slip_zone": (NodeStatus.STICK, NodeStatus.CREEP_RIGHT, NodeStatus.CREEP_LEFT),
 }
 #: At nodes, as their descriptions say: right up to an interval.
 COUNTED = {"observables/largest_pressure_x", "cycles/largest_pressure_x"}
@@ -202,9 +202,13 @@ def _but_for_narrow_zones(verdict: Verdict, name: str, base: mfv.Result, fine: m
     every, wide = _zones(fine, statuses, 0.0 * widths), _zones(fine, statuses, NARROW * widths)
     if len(every) == len(wide):
         return verdict
-    if re.fullmatch(_STICK_POSITION, name):
-        ends = [first if name == "stick_left" else last - 1 for first, last in wide]
-        explains = any(abs(fine.mesh.x[end] - verdict.value) <= NARROW * widths[end] for end in ends)
+    if re.fullmatch(rf"{_STICK_POSITION}|.*_slip_zone", name):
+        ends = [first if "left" in name else last - 1 for first, last in wide]
+        places = [fine.mesh.x[end] for end in ends]
+        if name.endswith("_slip_zone"):
+            edge = fine.observables.contact_centre + (0.5 if "right" in name else -0.5) * fine.observables.contact_length
+            places = [abs(edge - place) for place in places]
+        explains = any(abs(place - verdict.value) <= NARROW * widths[end] for place, end in zip(places, ends))
         return verdict._replace(word="unknown") if explains else verdict
     own = len(_zones(base, statuses, 0.0 * np.asarray(base.mesh.x)))
     if own == len(wide):
@@ -336,5 +340,6 @@ def flagged_quantities(base: mfv.Result) -> list[str]:
     found = [names for text, names in FLAGS if any(re.search(text, warning) for warning in warnings)]
     for warning in warnings:
         for names in re.findall(r"not resolved: ([^;]*)", warning):
-            found += [NAMED.get(name, re.escape(name)) for name in names.split(", ")]
+            # Nor is the place of what is not resolved.
+            found += [NAMED.get(name, rf"{re.escape(name)}(_[xy])?") for name in names.split(", ")]
     return found
