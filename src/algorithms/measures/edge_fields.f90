@@ -105,37 +105,35 @@ contains
       end associate
    end function slip_zones_of
 
-   !> Exponents of the pressure at the edges of a patch, and its intensities at corners. Of different bodies whose outermost node
-   !> sticks the edge is not known: the pressure oscillates at a corner, and elsewhere there is a slip zone without a node; nor are
-   !> intensities from nodes that stick beside it. `turns`: whether the moment is prescribed.
+   !> Exponents of the pressure at the edges of a patch, and its intensities at corners. Of different bodies of which a node beside
+   !> the edge sticks these are not known: at a corner the pressure oscillates, and elsewhere the slip zone is too narrow for the
+   !> mesh. `turns`: whether the moment is prescribed.
    subroutine add_exponents(model, state, patch, turns, edges)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       type(patch_type), intent(in) :: patch
       logical, intent(in) :: turns
       type(edge_field_type), intent(inout) :: edges(2)
-      logical :: ends(2), unknown(2), mixed(2)
-      real(wp) :: powers(2), none
+      logical :: ends(2), unknown(2)
+      real(wp) :: powers(2)
 
-      none = ieee_value(1.0_wp, ieee_quiet_nan)
       ends = [patch%left_ends, patch%right_ends]
       powers = [patch%left_power, patch%right_power]
-      ! Other surfaces that end there are cut off.
-      unknown = ends .and. .not. [is_corner(model, patch%first, -1), is_corner(model, patch%last, 1)]
-      mixed = unknown
-      if (is_coupled(model)) then
-         unknown = unknown .or. holds(state%status([patch%first, patch%last]))
-         associate (last => min(patch%first + samples, patch%last), first => max(patch%last - samples, patch%first))
-            mixed = unknown .or. [any(holds(state%status(patch%first:last))), any(holds(state%status(first:patch%last)))]
-         end associate
-      end if
       edges%exponent = merge(powers - 1.0_wp, powers, ends)
       if (any(ends)) edges%corner = singular_intensities(model, state%fields%pressure, patch, powers, ends, turns)
-      where (unknown) edges%exponent = none
-      where (.not. ends .or. mixed) edges%corner = none
-      where (mixed)
-         edges%normal = none
-         edges%reach = none
+      where (.not. ends) edges%corner = ieee_value(1.0_wp, ieee_quiet_nan)
+      ! Other surfaces that end there are cut off.
+      unknown = ends .and. .not. [is_corner(model, patch%first, -1), is_corner(model, patch%last, 1)]
+      if (is_coupled(model)) then
+         associate (last => min(patch%first + samples, patch%last), first => max(patch%last - samples, patch%first))
+            unknown = unknown .or. [any(holds(state%status(patch%first:last))), any(holds(state%status(first:patch%last)))]
+         end associate
+      end if
+      where (unknown)
+         edges%exponent = ieee_value(1.0_wp, ieee_quiet_nan)
+         edges%corner = edges%exponent
+         edges%normal = edges%exponent
+         edges%reach = edges%exponent
       end where
    end subroutine add_exponents
 
