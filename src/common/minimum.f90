@@ -33,7 +33,8 @@ module mfv_minimum
 contains
 
    !> Local minimum of an objective near `x`, with initial steps `step`, shape of x; stops at 1e-5 of the initial simplex size
-   !> (a smooth objective is then known to some 1e-10 of its change over that) or after 400 iterations. Returns the point in `x` and the objective in `value`.
+   !> (a smooth objective is then known to some 1e-10 of its change over that) or after 400 iterations. Returns the point in `x` and
+   !> the objective in `value`.
    subroutine minimum_near(objective, step, x, value)
       class(objective_type), intent(in), target :: objective
       real(wp), intent(in) :: step(:)
