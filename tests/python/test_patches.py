@@ -101,7 +101,7 @@ def mirrored(numbers: Numbers, nodes: int) -> Numbers:
             part in name for part in ODD_PLACES
         ):
             values = -values
-        if name.endswith("_shear_intensity"):
+        if "_shear_intensity" in name:
             values = -values
         if group == "patches" and name.endswith("_node"):
             values = nodes + 1 - values

@@ -3,7 +3,7 @@ module mfv_result_file
    use mfv_case, only: case_type
    use mfv_error, only: error_type, set_error
    use mfv_features, only: no_hdf5_message
-   use mfv_kinds, only: wp
+   use mfv_observables, only: observed_type
    use mfv_simulation, only: simulation_type
    use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
    use mfv_strings, only: string_type
@@ -42,7 +42,7 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(string_type), intent(in) :: warnings(:)
       logical, intent(in), optional :: with_restart
-      real(wp), intent(in), optional :: observed(:)
+      type(observed_type), intent(in), optional :: observed
       type(error_type), allocatable, intent(out) :: error
 
       call check_writable(path, error)
