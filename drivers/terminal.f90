@@ -102,8 +102,9 @@ contains
       end if
    end subroutine note
 
-   !> An estimate of the time left, with a comma; empty if there is none yet. The rate is that since the earlier mark, so that the
-   !> first quarter of the work that is done does not count: the press may take longer than all cycles, or less.
+   !> The estimated time left as text that ends with a comma; empty before there is an estimate. The remaining work is taken to go
+   !> on at the mean rate since the mark `earlier`. The first quarter of the work done is before that mark and does not count: a
+   !> press may be much slower or faster than the cycles after it.
    function time_left(self, now) result(text)
       class(terminal_observer_type), intent(in) :: self
       type(mark_type), intent(in) :: now

@@ -324,33 +324,42 @@ contains
       real(wp), intent(in) :: x(:)
       integer, intent(in) :: interpolation
       real(wp) :: heights(size(x))
-      real(wp), allocatable :: position(:), height(:)
-      type(c_ptr) :: interpolant
-      integer(c_size_t) :: points
-      integer(c_int) :: code
-      integer :: i, n
+      integer :: n
 
       heights = 0.0_wp
-      position = self%position
-      height = self%height
       if (interpolation == interpolation_cubic .and. closes(self)) then
          ! One point of the neighbouring periods: else the slope would jump where they meet.
-         n = size(position)
-         position = [position(1) - (position(n) - position(n - 1)), position, position(n) + (position(2) - position(1))]
-         height = [height(n - 1), height, height(2)]
-      end if
-      points = size(position, kind=c_size_t)
-      if (interpolation == interpolation_cubic) then
-         interpolant = gsl_interp_alloc(gsl_interp_steffen, points)
+         n = size(self%position)
+         associate (position => self%position, height => self%height)
+            call evaluate([position(1) - (position(n) - position(n - 1)), position, position(n) + (position(2) - position(1))], &
+                          [height(n - 1), height, height(2)])
+         end associate
       else
-         interpolant = gsl_interp_alloc(gsl_interp_linear, points)
+         call evaluate(self%position, self%height)
       end if
-      code = gsl_interp_init(interpolant, position, height, points)
-      do i = 1, size(x)
-         if (.not. self%has_surface(x(i))) cycle
-         heights(i) = gsl_interp_eval(interpolant, position, height, x(i), c_null_ptr)
-      end do
-      call gsl_interp_free(interpolant)
+
+   contains
+
+      !> The interpolation of these points at `x`.
+      subroutine evaluate(position, height)
+         real(wp), intent(in), contiguous :: position(:), height(:)
+         type(c_ptr) :: interpolant
+         integer(c_size_t) :: points
+         integer(c_int) :: code
+         integer :: i
+
+         points = size(position, kind=c_size_t)
+         if (interpolation == interpolation_cubic) then
+            interpolant = gsl_interp_alloc(gsl_interp_steffen, points)
+         else
+            interpolant = gsl_interp_alloc(gsl_interp_linear, points)
+         end if
+         code = gsl_interp_init(interpolant, position, height, points)
+         do i = 1, size(x)
+            if (self%has_surface(x(i))) heights(i) = gsl_interp_eval(interpolant, position, height, x(i), c_null_ptr)
+         end do
+         call gsl_interp_free(interpolant)
+      end subroutine evaluate
    end function interpolated
 
    !> Whether a profile ends where its next period begins.

@@ -4,7 +4,7 @@ module mfv_profile_sampling
    use mfv_kinds, only: pi, wp
    implicit none
    private
-   public :: find_missed, pressure_of_wave, largest_jump, sufficient_interval, negligible_pressure
+   public :: find_missed, pressure_of_wave, largest_jumps, sufficient_interval, negligible_pressure
 
    !> Changes of the pressure by what lies between nodes below this fraction of the peak do not matter.
    real(wp), parameter :: negligible_pressure = 0.02_wp
@@ -87,29 +87,32 @@ contains
       pressure = pi*modulus*height/width
    end function pressure_of_wave
 
-   !> Largest jump of the slope, J, at points of a profile around `x` that intervals of a `width` (lengths) do not resolve; 0 of
-   !> other bodies. Where the slope jumps by J the pressure grows by m J/pi whenever intervals are shorter by a factor e (Johnson
-   !> 1985, section 5.2); piecewise cubics spread J over the distance of the points, and with shorter intervals it matters less, in
-   !> second order.
-   pure real(wp) function largest_jump(body, x, width) result(jump)
+   !> Largest jump of the slope, J, at points of a profile around each `x` that intervals of this `width` (lengths, shape of x)
+   !> do not resolve; 0 of other bodies. Where the slope jumps by J the pressure grows by m J/pi whenever intervals are shorter by a
+   !> factor e (Johnson 1985, section 5.2); piecewise cubics spread J over the distance of the points, and with shorter intervals it
+   !> matters less, in second order.
+   pure function largest_jumps(body, x, width) result(jumps)
       class(geometry_type), intent(in) :: body
-      real(wp), intent(in) :: x, width
+      real(wp), intent(in) :: x(:), width(:)
+      real(wp) :: jumps(size(x))
       real(wp), allocatable :: position(:), height(:)
-      real(wp) :: left, right, at_point
+      real(wp) :: left, right, jump
+      logical :: is_cubic
       integer :: k
 
-      jump = 0.0_wp
+      jumps = 0.0_wp
       if (.not. body%is_sampled()) return
+      is_cubic = body%interpolation == interpolation_cubic
       call body%get_points(position, height)
       do k = 2, size(position) - 1
          left = position(k) - position(k - 1)
          right = position(k + 1) - position(k)
-         if (position(k) < x - max(width, right) .or. position(k) > x + max(width, left)) cycle
-         at_point = abs((height(k + 1) - height(k))/right - (height(k) - height(k - 1))/left)
-         if (body%interpolation == interpolation_cubic) at_point = at_point*min(1.0_wp, 2.0_wp*width/(left + right))**2
-         jump = max(jump, at_point)
+         jump = abs((height(k + 1) - height(k))/right - (height(k) - height(k - 1))/left)
+         where (position(k) >= x - max(width, right) .and. position(k) <= x + max(width, left))
+            jumps = max(jumps, jump*merge(min(1.0_wp, 2.0_wp*width/(left + right))**2, 1.0_wp, is_cubic))
+         end where
       end do
-   end function largest_jump
+   end function largest_jumps
 
    !> Interval, at most `longest`, with which nodes miss nothing of a profile that changes the pressure by a fraction
    !> negligible_pressure of `pressure`, or that is a quarter of the mean spacing of its points; lengths.

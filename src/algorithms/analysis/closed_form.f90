@@ -47,7 +47,7 @@ contains
       associate (model => simulation%contact%model, scene => simulation%contact%model%scene, &
                  force => simulation%contact%state%fields%force(motion_approach))
          if (.not. (force > 0.0_wp .and. scene%modulus() > 0.0_wp) .or. scene%is_layered()) return
-         if (model%compliance%elastic_block(block_wt) .and. model%tangential .and. .not. scene%is_similar()) return
+         if (model%tangential .and. model%couples(block_wt)) return
          if (any(simulation%load_summary%controlled(motion_rotation + 1:))) return
          if (any(abs(model%worn) > 0.0_wp)) return
          if (scene%mesh%period > 0.0_wp) then
@@ -115,7 +115,7 @@ contains
 
       associate (contact => simulation%contact, model => simulation%contact%model)
          is_carter = model%scene%friction%is_coulomb() .and. model%tangential .and. contact%rolling%is_steady(half_width) .and. &
-                     (model%scene%is_similar() .or. .not. model%compliance%elastic_block(block_up)) .and. &
+                     .not. model%couples(block_up) .and. &
                      any(contact%state%status == node_stick)
       end associate
    end function is_carter
@@ -176,8 +176,7 @@ contains
       pair = simulation%contact%model%scene%near_field()
       associate (model => simulation%contact%model)
          is_spence = (is_hertz(model%scene) .or. model%scene%upper%has_sharp_ends()) .and. &
-                     model%compliance%elastic_block(block_up) .and. &
-                     model%scene%friction%is_coulomb() .and. model%tangential .and. .not. model%scene%is_similar()
+                     model%couples(block_up) .and. model%scene%friction%is_coulomb() .and. model%tangential
       end associate
       is_spence = is_spence .and. simulation%load_summary%pressed_harder .and. .not. abs(pair%mixed) > 0.0_wp
    end function is_spence
@@ -214,8 +213,7 @@ contains
       associate (model => simulation%contact%model, summary => simulation%load_summary)
          is_mindlin = .not. form%indenter%is_flat() .and. model%scene%friction%is_coulomb() .and. model%tangential .and. &
                       summary%pressed_then_sheared .and. summary%sheared .and. &
-                      (.not. summary%friction_in_press .or. model%scene%is_similar() .or. &
-                       .not. model%compliance%elastic_block(block_up)) .and. &
+                      .not. (summary%friction_in_press .and. model%couples(block_up)) .and. &
                       (simulation%keep_states == states_reversals .or. &
                        simulation%keep_states == states_steps .and. .not. summary%cycled)
       end associate

@@ -17,7 +17,7 @@ module mfv_discretisation_error
    use mfv_node_status, only: holds, in_contact
    use mfv_observables
    use mfv_observer, only: observer_type, relay_type
-   use mfv_profile_sampling, only: largest_jump, negligible_pressure
+   use mfv_profile_sampling, only: largest_jumps, negligible_pressure
    use mfv_resolution, only: add_unresolved, all_quantities, find_unresolved, is_unresolved, undersampling, unresolved_type
    use mfv_scene, only: scene_type
    use mfv_simulation, only: history_none, mark_loading, mark_return, mark_reversal, new_simulation, simulation_type, &
@@ -106,8 +106,7 @@ contains
    end subroutine estimate_error
 
    !> The largest tension may be at another place where one is as large within their bars, as at both edges of a contact: its
-   !> distance is added to the bars of places. `extremes`: see find_extremes; `bars`: shape
-   !> (observable_count).
+   !> distance is added to the bars of places. `extremes`: see find_extremes; `bars`: shape (observable_count).
    subroutine add_rivals(simulation, extremes, bars)
       type(simulation_type), intent(in) :: simulation
       type(load_extremes_type), intent(in) :: extremes
@@ -747,18 +746,13 @@ contains
       real(wp), intent(in) :: pressure(:)
       real(wp), parameter :: nearly = 0.9_wp, least_softness = 0.1_wp
       type(near_field_type) :: pair
-      real(wp) :: jump, least
-      integer :: i
+      real(wp) :: jump
+      logical :: is_large(size(pressure))
 
-      jump = 0.0_wp
-      least = nearly*maxval(pressure)
-      if (model%scene%lower%is_sampled() .or. model%scene%upper%is_sampled()) then
-         do i = 1, size(pressure)
-            if (pressure(i) < least) cycle
-            jump = max(jump, largest_jump(model%scene%lower, model%x(i), model%width(i)) + &
-                       largest_jump(model%scene%upper, model%x(i), model%width(i)))
-         end do
-      end if
+      is_large = pressure >= nearly*maxval(pressure)
+      associate (x => pack(model%x, is_large), width => pack(model%width, is_large), scene => model%scene)
+         jump = maxval(largest_jumps(scene%lower, x, width) + largest_jumps(scene%upper, x, width))
+      end associate
       ! Oblique surfaces that slip to one side are softer (mfv_corners).
       pair = model%scene%near_field()
       at_jumps = model%scene%modulus()*jump/pi

@@ -63,7 +63,7 @@ contains
          if (.not. (model%tangential .and. model%upright) .or. cycle%turns /= 2) return
          if (scene%lower%deforms_as_circle() .or. scene%upper%deforms_as_circle() .or. scene%lower%is_matrix()) return
          if (scene%is_layered() .or. scene%wear%acts() .or. .not. scene%friction%is_coulomb()) return
-         if (model%compliance%elastic_block(block_up) .and. .not. scene%is_similar()) return
+         if (model%couples(block_up)) return
          if (maxval(model%static_friction) - minval(model%kinetic_friction, mask=model%can_touch) > certified) return
          do i = 1, motion_count
             if (motions(i)%optional .and. model%moves(i)) return

@@ -20,7 +20,7 @@ module mfv_edge_fields
    use mfv_zone_edges, only: is_beyond_corner, patch_type
    implicit none
    private
-   public :: edge_field_type, edge_fields_of, edge_quantities, most_patches, undefined_edge, is_coupled
+   public :: edge_field_type, edge_fields_of, edge_quantities, most_patches, undefined_edge
 
    !> A contact edge. NaN where something is not defined.
    type :: edge_field_type
@@ -124,7 +124,7 @@ contains
       where (.not. ends) edges%corner = ieee_value(1.0_wp, ieee_quiet_nan)
       ! Other surfaces that end there are cut off.
       unknown = ends .and. .not. [is_corner(model, patch%first, -1), is_corner(model, patch%last, 1)]
-      if (is_coupled(model)) then
+      if (model%couples(block_wt)) then
          associate (last => min(patch%first + samples, patch%last), first => max(patch%last - samples, patch%first))
             unknown = unknown .or. [any(holds(state%status(patch%first:last))), any(holds(state%status(first:patch%last)))]
          end associate
@@ -144,13 +144,6 @@ contains
 
       is_corner = is_beyond_corner(model, model%arc(node) + side*model%width(node))
    end function is_corner
-
-   !> Whether pressure and shear of nodes that stick depend on each other next to an edge.
-   logical function is_coupled(model)
-      type(contact_model_type), intent(in) :: model
-
-      is_coupled = model%compliance%elastic_block(block_wt) .and. .not. model%scene%is_similar()
-   end function is_coupled
 
    !> Intensities of the changes at the edges of a patch, and the slip zones that follow. `before`: the state at the last turning
    !> point; `response`: the change since then; `turns`: as above.
@@ -232,10 +225,10 @@ contains
       type(constraints_type) :: constraints
       logical :: singular
 
-      known = model%tangential .and. .not. is_coupled(model) .and. .not. (model%moves(motion_rotation) .and. model%rolls())
+      known = model%tangential .and. .not. model%couples(block_wt) .and. .not. (model%moves(motion_rotation) .and. model%rolls())
       if (.not. known) return
       constraints%load = changes_of_loads(model, state%fields, before%fields, load)
-      if (model%compliance%elastic_block(block_up) .and. .not. model%scene%is_similar()) &
+      if (model%couples(block_up)) &
          known = .not. abs(constraints%load(motion_approach)%rate) > significant*abs(state%fields%force(motion_approach))
       if (.not. known) return
       constraints%status = merge(node_stick, node_open, in_contact(state%status))

@@ -24,8 +24,7 @@ module mfv_load_extremes
    implicit none
    private
    public :: extreme_type, load_extremes_type, slip_range_type, candidate_count, candidate_tension, candidate_von_mises, &
-             most_rows, add_estimate, &
-             is_same_estimate, over_steps, over_cycle, over_rows
+             most_rows, add_estimate, is_same_estimate, over_steps, over_cycle, over_rows
 
    !> Stretches: steps without cycles, a cycle, rows of &history.
    integer, parameter :: over_steps = 1, over_cycle = 2, over_rows = 3

@@ -72,6 +72,7 @@ module mfv_contact_model
       procedure :: displace
       procedure :: has_rigid_parts
       procedure :: motions_couple
+      procedure :: couples
       procedure :: lifts
       procedure :: rigid_normal
       procedure :: rigid_tangential
@@ -393,6 +394,15 @@ contains
 
       has_rigid_parts = any(self%moves .and. motions%optional) .or. .not. self%upright
    end function has_rigid_parts
+
+   !> Whether nodes that stick couple the tractions in a block of the compliance (block_up, block_wt) next to an edge: not of
+   !> elastically similar bodies.
+   pure logical function couples(self, block)
+      class(contact_model_type), intent(in) :: self
+      integer, intent(in) :: block
+
+      couples = self%compliance%elastic_block(block) .and. .not. self%scene%is_similar()
+   end function couples
 
    !> Whether motions couple the normal and the tangential problem: all but approach, shift, bulk stresses and wear do, and all do
    !> with inclined normals.

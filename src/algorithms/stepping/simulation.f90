@@ -3,11 +3,12 @@ module mfv_simulation
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan, ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only: int64, int8
    use mfv_checksum, only: add_to_checksum
+   use mfv_compliance, only: block_wt
    use mfv_contact_model, only: new_contact_model
    use mfv_contact_state, only: contact_state_type
    use mfv_contact_system, only: initial_loads, load_type
    use mfv_cycle, only: append_cycle, cycle_type, new_turning_point, turning_point_type
-   use mfv_edge_fields, only: edge_field_type, edge_fields_of, is_coupled, undefined_edge
+   use mfv_edge_fields, only: edge_field_type, edge_fields_of, undefined_edge
    use mfv_derivative_increments, only: differentiate_end
    use mfv_error, only: error_type
    use mfv_contact_path, only: contact_path_type, new_contact_path, path_position_type, saved_path_type, segment_type
@@ -856,10 +857,11 @@ contains
       type(patch_type), allocatable :: patches(:)
       type(edge_field_type), allocatable :: edges(:, :)
 
-      call find_patches(self%contact%model, self%contact%state, patches)
       point%left = undefined_edge()
       point%right = point%left
-      if (size(patches) == 0 .or. self%contact%model%scene%wear%acts() .or. is_coupled(self%contact%model)) return
+      if (self%contact%model%scene%wear%acts() .or. self%contact%model%couples(block_wt)) return
+      call find_patches(self%contact%model, self%contact%state, patches)
+      if (size(patches) == 0) return
       edges = self%edge_fields(patches)
       point%left = edges(1, 1)
       point%right = edges(2, size(patches))
