@@ -5,5 +5,4 @@ install_missing
 python_environment test
 build release
 cd "$root"
-MFV_DEEP=1 OPENBLAS_NUM_THREADS=1 MPLBACKEND=Agg PYTHONPATH=python MFV_LIBRARY=$root/build/release/lib/libmfv.so \
-  MFV_RUN=$root/build/release/bin/mfv_run "$venv/bin/python" -m pytest -q -p no:cacheprovider tests/python/test_surfaces.py tests/python/test_periodic.py
+MFV_DEEP=1 sh scripts/pytest tests/python/test_surfaces.py tests/python/test_periodic.py

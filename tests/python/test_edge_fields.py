@@ -106,15 +106,7 @@ def test_permanent_stick_zone_at_every_turning_point() -> None:
     between."""
     for rows in ((1.0, -1.0, 0.3, -0.2), (0.1, 1.0, -1.0, -0.1), (1.0, 0.2, -1.0, -0.2)):
         path = History(normal_force=[P] * 4, tangential_force=[Q * row for row in rows], cycles=3, period=4)
-        scene = Scene(
-            PLANE,
-            CYLINDER,
-            friction=Friction.coulomb(MU),
-            mesh=Mesh(nodes=401, gap="parabolic"),
-            steps=[Step(normal_force=P)],
-            history=path,
-        )
-        seen = mfv.run(scene).observables
+        seen = observed(Step(normal_force=P), history=path, mesh={"nodes": 401}).observables
         assert seen.permanent_stick_length == pytest.approx(2.0 * A * math.sqrt(1.0 - Q / (MU * P)), rel=2e-3)
 
 
@@ -139,15 +131,7 @@ def test_noise_of_the_normal_force_is_no_turning_point() -> None:
     angle = np.arange(1, 41) / 40.0 * 2.5 * math.pi
     noise = 1.0 + 1.0e-5 * np.random.default_rng(1).standard_normal(40)
     path = History(normal_force=list(P * noise), tangential_force=list(Q * np.sin(angle)))
-    scene = Scene(
-        PLANE,
-        CYLINDER,
-        friction=Friction.coulomb(MU),
-        mesh=Mesh(nodes=201, gap="parabolic"),
-        steps=[Step(normal_force=P)],
-        history=path,
-    )
-    seen = mfv.run(scene).observables
+    seen = observed(Step(normal_force=P), history=path).observables
     assert seen.right_shear_intensity == pytest.approx(2.0 * K_T, rel=1e-4)
     assert seen.right_asymptotic_slip_zone == pytest.approx(2.0 * K_T / (MU * K_N), rel=1e-3)
 

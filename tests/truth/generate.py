@@ -95,11 +95,7 @@ def _fit(draw: Draw) -> Problem:
     plane = made.one("scene").get("plane", "strain")
     radius = sizes.half_width = draw.power(-3, 3)
     bodies: list[Keys] = [{"shape": "hole", "radius": radius}, {"shape": "disk", "radius": radius}]
-    rigid = draw.whole(0, 1) if draw.chance(0.25) else None
-    alike = _material(draw) if draw.chance(0.3) else None
-    for number, body in enumerate(bodies):
-        body.update({"rigid": True} if number == rigid else alike or _material(draw))
-    sizes.modulus = 2 / sum(compliance(body, plane) for body in bodies)
+    sizes.modulus = _add_materials(draw, bodies, plane, rigid=0.25, alike=0.3)
     strain = draw.power(-4, -2)
     is_pressed = draw.chance(0.65)
     pressure = 0.5 * strain * sizes.modulus
@@ -168,11 +164,7 @@ def _rough(draw: Draw) -> Problem:
     kind = draw.one_of(given=0.6, points=0.2, default=0.2)
     profile, shortest = _self_affine(draw, made, length, slope, 10 if kind == "default" else 40)
     bodies: list[Keys] = [{"shape": "half_plane"}, profile]
-    rigid = draw.whole(0, 1) if draw.chance(0.5) else None
-    alike = _material(draw) if draw.chance(0.25) else None
-    for number, body in enumerate(bodies):
-        body.update({"rigid": True} if number == rigid else alike or _material(draw))
-    sizes.modulus = 2 / sum(compliance(body, plane) for body in bodies)
+    sizes.modulus = _add_materials(draw, bodies, plane, rigid=0.5, alike=0.25)
     # The length in contact is about the force over E* and the slope.
     share = draw.power(-1.7, -0.3)
     sizes.force = share * slope * sizes.modulus * length
@@ -235,6 +227,15 @@ def _self_affine(draw: Draw, made: Problem, length: float, slope: float, most: i
     made.tables["profile.csv"] = {"x": x.tolist(), "height": (height - height.min()).tolist()}
     made.labels["profile"] = kind
     return keys, length / shortest
+
+
+def _add_materials(draw: Draw, bodies: list[Keys], plane: str, rigid: float, alike: float) -> float:
+    """Give the bodies materials; `rigid`, `alike`: the shares of scenes in which one is rigid, or both have one. The contact modulus."""
+    hard = draw.whole(0, 1) if draw.chance(rigid) else None
+    common = _material(draw) if draw.chance(alike) else None
+    for number, body in enumerate(bodies):
+        body.update({"rigid": True} if number == hard else common or _material(draw))
+    return 2 / sum(compliance(body, plane) for body in bodies)
 
 
 def _material(draw: Draw) -> Keys:
