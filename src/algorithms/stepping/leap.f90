@@ -66,6 +66,8 @@ module mfv_leap
       !> A contact that has begun in the segment, without friction, at the goal: the largest pressure, force/length^2; the friction
       !> limit, force. Zero: it has not (has_begun).
       real(wp) :: traction = 0.0_wp, sliding_limit = 0.0_wp
+      !> The dissipation of the contact before the segment, force.
+      real(wp) :: dissipation = 0.0_wp
    end type leap_progress_type
 
 contains
@@ -87,6 +89,7 @@ contains
       call path%start_segment(segment, error)
       if (allocated(error)) return
       if (.not. lacks_support(path, segment)) progress%goal = before_separation(segment)
+      progress%dissipation = path%state%dissipation
       call set_length(progress, progress%goal)
       do while (progress%done < progress%goal)
          if (progress%by_violations) then
@@ -529,20 +532,23 @@ contains
 
    !> The work that the error of the dissipation of a chain is compared with, force: the dissipation. If contact begins, that is
    !> often next to nothing: then at least that of a cycle of shear to about 0.8 mu P, as a fraction of (mu P)^2/m, m the contact
-   !> modulus. In later parts of a segment in which it has begun, at least a `part` of that at the goal.
+   !> modulus. In later parts of a segment in which it has begun, at least a `part` of the dissipation at the goal, if it grows with
+   !> the square of the load as that of a parabola, but no more than that of such a cycle.
    pure real(wp) function reference_work(path, progress, chain) result(work)
       class(contact_path_type), intent(in) :: path
       type(leap_progress_type), intent(in) :: progress
       type(chain_type), intent(in) :: chain
       real(wp), parameter :: fraction = 0.06_wp, part = 0.25_wp
-      real(wp) :: cycle_work
+      real(wp) :: cycle_work, share
 
       work = chain%work
       cycle_work = fraction/path%model%compliance%modulus
-      if (has_begun(progress)) then
-         work = max(work, part*cycle_work*progress%sliding_limit**2)
-      else if (chain%begins) then
+      if (chain%begins) then
          work = max(work, cycle_work*path%model%force(path%model%static_friction*chain%after(chain%increments)%pressure)**2)
+      else if (has_begun(progress)) then
+         share = (progress%done + progress%length)/progress%goal
+         work = max(work, part*min(cycle_work*progress%sliding_limit**2, &
+                                   (path%state%dissipation - progress%dissipation + chain%work)/share**2))
       end if
    end function reference_work
 
