@@ -1,5 +1,5 @@
-!> The state of a run: its contact, what is kept on the way, and the position in the load history. A saved_run_type is what it was at
-!> an earlier time, whether a host restores it, a block of wear is taken again, or a restart file has it.
+!> The state of a run: its contact, what is kept on the way, and the position in the load history. A saved_run_type is what it was
+!> at an earlier time, whether a host restores it, a block of wear is taken again, or a restart file has it.
 !>
 !> Restart files save path_record_type (mfv_contact_path) and run_record_type whole: what is added there, of a fixed size, is not
 !> lost.

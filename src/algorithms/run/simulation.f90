@@ -283,8 +283,8 @@ contains
       end associate
    end subroutine record_surface
 
-   !> Continue from `restart`, which another run of the scene has stored, on the mesh of that time. Snapshots, cycles, marks, history
-   !> and slip ranges are those of that run already. The linear solver starts without history.
+   !> Continue from `restart`, which another run of the scene has stored, on the mesh of that time. Snapshots, cycles, marks,
+   !> history and slip ranges are those of that run already. The linear solver starts without history.
    subroutine resume(self)
       class(simulation_type), intent(inout) :: self
       integer :: i

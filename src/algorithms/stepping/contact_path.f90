@@ -133,7 +133,7 @@ module mfv_contact_path
    end type contact_path_type
 
    !> A saved position, with the sizes of the history and the mesh and the modelled problem at that time. The linear solver may be
-   !> left out: it then goes on without what it has stored.
+   !> omitted: it then goes on without what it has stored.
    type :: saved_path_type
       type(path_position_type) :: position
       class(contact_system_type), allocatable :: system
