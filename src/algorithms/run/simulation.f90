@@ -28,6 +28,8 @@ module mfv_simulation
    public :: mark_loading, mark_reversal, mark_return, mark_cycle_start, mark_yield, mark_turn, mark_count
 
    type, extends(run_state_type) :: simulation_type
+      !> Segments of the scene before each step, and of all steps, for progress, shape (steps + 1).
+      integer, allocatable, private :: segments_before(:)
    contains
       procedure :: run
       procedure :: advance
@@ -47,8 +49,13 @@ contains
       integer, intent(in) :: keep_history
       integer, intent(in), optional :: keep_states
       type(simulation_type) :: self
+      integer :: i
 
-      allocate (self%marks(mark_count))
+      allocate (self%marks(mark_count), self%segments_before(size(scene%steps) + 1))
+      self%segments_before(1) = 0
+      do i = 1, size(scene%steps)
+         self%segments_before(i + 1) = self%segments_before(i) + scene%steps(i)%segments()
+      end do
       self%message = trim(scene%fault())
       if (self%message /= '') then
          self%outcome = MFV_INPUT_ERROR
@@ -85,15 +92,11 @@ contains
       class(simulation_type), intent(inout) :: self
       class(observer_type), intent(inout), optional :: observer
       type(step_type) :: step
-      integer :: before, i, segments
+      integer :: i
 
       i = self%scene_steps_done + 1
-      associate (steps => self%contact%model%scene%steps)
-         step = steps(i)  ! a copy, since the model may be replaced
-         before = sum(steps(:i - 1)%segments())
-         segments = sum(steps%segments())
-      end associate
-      call advance_segment(self, step, before, segments, observer)
+      step = self%contact%model%scene%steps(i)  ! a copy, since the model may be replaced
+      call advance_segment(self, step, self%segments_before(i), self%segments_before(size(self%segments_before)), observer)
       if (self%outcome /= MFV_COMPLETE) then
          self%failed_scene_step = i
       else if (self%leg%number == 0) then
