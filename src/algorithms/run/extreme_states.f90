@@ -2,7 +2,6 @@
 module mfv_extreme_states
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan
    use mfv_contact_state, only: contact_state_type
-   use mfv_cycle, only: cycle_type
    use mfv_kinds, only: wp
    use mfv_load_extremes, only: add_estimate, candidate_count, candidate_tension, candidate_von_mises, extreme_type, &
                                 is_same_estimate, load_extremes_type, most_rows, over_cycle, over_rows, over_steps, slip_range_type
@@ -26,8 +25,8 @@ contains
       integer :: i, turn
       integer :: place(candidate_count), yield_place
 
-      turn = 1 + mod(self%leg%number - 1, step%turns())
-      if (merge(turn, 0, step%cycles > 0) == 1 .or. (step%row == 1 .and. self%leg%number == 1)) then
+      turn = 1 + mod(self%current%number - 1, step%turns())
+      if (merge(turn, 0, step%cycles > 0) == 1 .or. (step%row == 1 .and. self%current%number == 1)) then
          self%extremes = load_extremes_type(stretch=over_cycle, step=self%steps_done + 1)
          if (step%row > 0) self%extremes%stretch = over_rows
          self%slip_range = slip_range_type()
@@ -38,37 +37,36 @@ contains
          if (extremes%stretch == over_steps) i = self%steps_done + 1
          call extremes%add_state(contact%model, contact%state, self%slip_range, i, step%friction, place)
          do i = 1, candidate_count
-            if (place(i) > 0) call self%set_mark(mark_of(mark_candidate, i, place(i)), self%leg%number)
+            if (place(i) > 0) call self%set_mark(mark_of(mark_candidate, i, place(i)), self%current%number)
          end do
          do i = 1, size(candidate_von_mises)
             associate (candidate => candidate_von_mises(i))
                if (place(candidate) == 0) cycle
                call add_estimate(self%yield_estimate(:, i), extremes%estimate(place(candidate), candidate), yield_place)
-               if (yield_place > 0) call self%set_mark(mark_of(mark_yield, i, yield_place), self%leg%number)
+               if (yield_place > 0) call self%set_mark(mark_of(mark_yield, i, yield_place), self%current%number)
             end associate
          end do
       end associate
    end subroutine note_extremes
 
    !> The extremes of a complete cycle. The search for the largest tensions is skipped if they repeat those of the cycle before.
-   subroutine complete_extremes(self, cycle)
+   subroutine complete_extremes(self)
       class(run_state_type), intent(inout) :: self
-      type(cycle_type), intent(inout) :: cycle
       integer :: i, j, candidate
 
-      cycle%extremes = self%extremes
+      self%current%cycle%extremes = self%extremes
       do i = 1, size(candidate_tension)
          candidate = candidate_tension(i)
-         if (cycle%number > 1) then
+         if (self%current%cycle%number > 1) then
             associate (before => self%cycles(self%cycle_count)%extremes)
-               cycle%extremes%searched(candidate) = before%searched(candidate)
+               self%current%cycle%extremes%searched(candidate) = before%searched(candidate)
                if (self%extremes%is_repeated(before, candidate)) cycle
             end associate
          end if
-         call search(self, mark_of(mark_candidate, candidate, 1), candidate, cycle%extremes)
+         call search(self, mark_of(mark_candidate, candidate, 1), candidate, self%current%cycle%extremes)
       end do
       do i = 1, size(candidate_von_mises)
-         do j = 1, count(cycle%extremes%row(:, candidate_von_mises(i)) > 0)
+         do j = 1, count(self%current%cycle%extremes%row(:, candidate_von_mises(i)) > 0)
             self%marks(mark_of(mark_last_cycle, i, j)) = self%marks(mark_of(mark_candidate, candidate_von_mises(i), j))
          end do
       end do

@@ -13,7 +13,7 @@ module mfv_load_cycles
    use mfv_zone_edges, only: find_patches, patch_type
    implicit none
    private
-   public :: begin_cycles, restart_cycle, complete_leg, present_edge_fields, wears, is_steady
+   public :: begin_cycles, restart_cycle, complete_cycle_segment, present_edge_fields, wears, is_steady
 
 contains
 
@@ -25,9 +25,9 @@ contains
       do i = 1, mark_pending
          self%marks(i)%step = 0
       end do
-      self%leg%cycle = cycle_type()
-      self%leg%cycle%step = self%steps_done + 1
-      self%leg%cycle%loading_slip = self%slip
+      self%current%cycle = cycle_type()
+      self%current%cycle%step = self%steps_done + 1
+      self%current%cycle%loading_slip = self%slip
       call self%set_mark(mark_loading, 0)
       call restart_cycle(self)
    end subroutine begin_cycles
@@ -36,9 +36,9 @@ contains
    subroutine restart_cycle(self)
       class(run_state_type), intent(inout) :: self
 
-      self%leg%cycle%return = turning_point_here(self, ieee_value(1.0_wp, ieee_quiet_nan))
+      self%current%cycle%return = turning_point_here(self, ieee_value(1.0_wp, ieee_quiet_nan))
       call self%contact%state%begin_cycle_work()
-      call self%set_mark(mark_return, self%leg%number - 1)
+      call self%set_mark(mark_return, self%current%number - 1)
    end subroutine restart_cycle
 
    !> The present state as a turning point. `stiffness`: see turning_point_type.
@@ -51,45 +51,57 @@ contains
       end associate
    end function turning_point_here
 
-   !> Complete leg `leg` of cycles of `turns` legs. Store its end if it is the farthest of its cycle so far and, after a complete
-   !> cycle, the cycle.
-   subroutine complete_leg(self, leg, turns, cycle)
+   !> Complete a segment of cycles of `turns` segments. Store its end if it is the farthest of its cycle so far and, after a
+   !> complete cycle, the cycle.
+   subroutine complete_cycle_segment(self, turns)
       class(run_state_type), intent(inout) :: self
-      integer, intent(in) :: leg, turns
-      type(cycle_type), intent(inout) :: cycle
-      type(contact_state_type) :: before
+      integer, intent(in) :: turns
       type(turning_point_type) :: point
       logical :: is_farthest
 
       point = turning_point_here(self, self%contact%leaving%stiffness)
-      call cycle%add_point(point, is_first=mod(leg, turns) == 1)
-      if (mod(leg, turns) /= 0) then
-         is_farthest = mod(leg, turns) == 1
+      associate (number => self%current%number, cycle => self%current%cycle)
+         call cycle%add_point(point, is_first=mod(number, turns) == 1)
+         if (mod(number, turns) == 0) then
+            call complete_cycle(self, turns, point)
+            return
+         end if
+         is_farthest = mod(number, turns) == 1
          if (.not. is_farthest) is_farthest = cycle%is_farther(point)
          if (.not. is_farthest) return
          call add_edge_fields(self, point)
          cycle%reversal = point
-         call self%set_mark(mark_pending, leg)
-         return
-      end if
+         call self%set_mark(mark_pending, number)
+      end associate
+   end subroutine complete_cycle_segment
+
+   !> Complete the present cycle of `turns` segments, which ends at the turning point `point`.
+   subroutine complete_cycle(self, turns, point)
+      class(run_state_type), intent(inout) :: self
+      integer, intent(in) :: turns
+      type(turning_point_type), intent(inout) :: point
+      type(contact_state_type) :: before
+
       self%cycles_done = self%cycles_done + 1
-      cycle%number = leg/turns
-      cycle%turns = turns
-      cycle%worn_area = self%contact%model%force(self%contact%state%worn)
-      cycle%overall = self%cycles_done
-      cycle%start = cycle%return
       self%marks(mark_cycle_start) = self%marks(mark_return)
       self%marks(mark_reversal) = self%marks(mark_pending)
-      call add_edge_fields(self, point)
-      cycle%return = point
       before = self%padded(self%marks(mark_cycle_start))
-      cycle%change = change_since(self, before)
-      call self%set_mark(mark_return, leg)
-      if (cycle%number == 1) cycle%first_dissipation = cycle%dissipation()
-      if (cycle%number == 1) cycle%first_slip = cycle%slip()
-      call complete_extremes(self, cycle)
-      call append_cycle(self%cycles, self%cycle_count, cycle, self%keep_history == history_none)
-   end subroutine complete_leg
+      call add_edge_fields(self, point)
+      call self%set_mark(mark_return, self%current%number)
+      associate (cycle => self%current%cycle)
+         cycle%number = self%current%number/turns
+         cycle%turns = turns
+         cycle%worn_area = self%contact%model%force(self%contact%state%worn)
+         cycle%overall = self%cycles_done
+         cycle%start = cycle%return
+         cycle%return = point
+         cycle%change = change_since(self, before)
+         if (cycle%number == 1) cycle%first_dissipation = cycle%dissipation()
+         if (cycle%number == 1) cycle%first_slip = cycle%slip()
+      end associate
+      call complete_extremes(self)
+      call append_cycle(self%cycles, self%cycle_count, self%current%cycle, self%keep_history == history_none)
+   end subroutine complete_cycle
 
    !> The left and right edge of the patches of the present state, shape (2, patches).
    function present_edge_fields(self, patches) result(edges)
@@ -127,7 +139,7 @@ contains
       class(run_state_type), intent(in) :: self
       type(step_type), intent(in) :: step
 
-      wears = step%cycles > 0 .and. mod(self%leg%number, step%turns()) == 0 .and. self%contact%model%scene%wear%acts() .and. &
+      wears = step%cycles > 0 .and. mod(self%current%number, step%turns()) == 0 .and. self%contact%model%scene%wear%acts() .and. &
               self%contact%model%tangential
    end function wears
 
@@ -139,10 +151,10 @@ contains
       type(contact_state_type) :: start
       real(wp) :: blocks, worn
 
-      associate (cycle => self%leg%cycle, tolerance => step%steady_tolerance)
+      associate (cycle => self%current%cycle, tolerance => step%steady_tolerance)
          is_steady = cycle%number > 1 .and. cycle%change <= tolerance
          if (.not. (is_steady .and. wears(self, step))) return
-         blocks = real(step%cycles - self%leg%number/step%turns(), wp)/real(self%cycles(self%cycle_count)%block, wp)
+         blocks = real(step%cycles - self%current%number/step%turns(), wp)/real(self%cycles(self%cycle_count)%block, wp)
          worn = self%contact%model%force(self%contact%state%worn)
          start = self%padded(self%marks(mark_cycle_start))
          is_steady = blocks*change_since(self, start) <= tolerance .and. blocks*(worn - cycle%worn_area) <= tolerance*worn

@@ -8,7 +8,6 @@ module mfv_load_segment
    use mfv_frictionless, only: apply_directly
    use mfv_kinds, only: wp
    use mfv_leap, only: apply_by_large_increments
-   use mfv_load_cycles, only: restart_cycle
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, control_force, control_displacement, control_keep
    use mfv_node_status, only: in_contact
    use mfv_observer, only: observer_type
@@ -17,30 +16,32 @@ module mfv_load_segment
    use mfv_slip_zones, only: segment_start_type
    implicit none
    private
-   public :: apply_leg, apply_segment, begin_segment, start_of, target_of
+   public :: reach_targets, apply_segment, begin_segment, start_of, target_of
 
 contains
 
-   !> Apply the loads of the current leg.
-   subroutine apply_leg(self, step, before, segments, observer, error)
+   !> Reach the targets of the current segment of a step.
+   subroutine reach_targets(self, step, before, segments, observer, error)
       class(run_state_type), intent(inout) :: self
       type(step_type), intent(in) :: step
       integer, intent(in) :: before, segments
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
       type(load_type) :: targets(motion_count)
+      type(segment_start_type) :: start
 
-      if (step%cycles > 0 .and. self%leg%number > 1 .and. mod(self%leg%number, step%turns()) == 1 .and. &
-          self%contact%model%scene%wear%acts()) call restart_cycle(self)
-      targets = merge(self%leg%there, self%leg%back, mod(self%leg%number, 2) == 1)
-      if (allocated(step%path)) targets = target_of(self%leg%there, step%control, &
-                                                    step%path(:, 1 + mod(self%leg%number - 1, step%turns())))
+      targets = merge(self%current%there, self%current%back, mod(self%current%number, 2) == 1)
+      if (allocated(step%path)) targets = target_of(self%current%there, step%control, &
+                                                    step%path(:, 1 + mod(self%current%number - 1, step%turns())))
       if (allocated(self%contact%derivatives)) &
-         call self%contact%derivatives%begin_segment(mod(self%leg%number, 2) == 0 .and. .not. allocated(step%path), &
+         call self%contact%derivatives%begin_segment(mod(self%current%number, 2) == 0 .and. .not. allocated(step%path), &
                                                      targets%control)
+      associate (state => self%contact%state)
+         start = segment_start_type(state%dissipation, state%fields%force, state%fields%shear)
+      end associate
       call begin_segment(self, targets, step, before, segments)
       if (self%contact%model%tangential .and. self%slip%turns_with(changes_of(self))) &
-         call self%set_mark(mark_turn, self%leg%number)
+         call self%set_mark(mark_turn, self%current%number)
       call apply_segment(self, observer, error)
       if (.not. allocated(error)) call reach_exactly(self%contact, targets)
       if (allocated(self%contact%derivatives)) then
@@ -50,11 +51,14 @@ contains
             call differentiate_end(self%contact, self%segment)
          end if
       end if
-      call self%slip%add_segment(self%contact%model, self%start, self%contact%state, changes_of(self), &
+      call self%slip%add_segment(self%contact%model, start, self%contact%state, changes_of(self), &
                                  self%contact%slip_zone_nodes, self%contact%system%tolerance)
       self%load%control = targets%control
       self%load%value = targets%value
-   end subroutine apply_leg
+      associate (fields => self%contact%state%fields)
+         if (allocated(error)) self%load = start_of(fields%force, fields%motion, targets)
+      end associate
+   end subroutine reach_targets
 
    !> Give the prescribed motions of a path the values of its `targets`, which they have reached but for round-off: another segment
    !> to the same targets is then without change. Without normal force, or pressures in a neat fit, nothing remains in contact.
@@ -83,17 +87,14 @@ contains
          segment%load = load_towards(start_of(fields%force, fields%motion, targets), targets, force)
          segment%friction = step%friction
          segment%step = self%steps_done + 1
-         segment%number = before + self%leg%number
+         segment%number = before + self%current%number
          segment%segments = segments
-      end associate
-      associate (state => self%contact%state)
-         self%start = segment_start_type(state%dissipation, state%fields%force, state%fields%shear)
       end associate
       call self%contact%note_start(self%segment%load)
    end subroutine begin_segment
 
-   !> Apply the loads of the current segment by the algorithm of the scene. Nothing changes while they are held: the rates of events
-   !> would be round-off.
+   !> Apply the loads of the current segment, which begin_segment has set, by the algorithm of the scene. Nothing changes while
+   !> they are held: the rates of events would be round-off.
    subroutine apply_segment(self, observer, error)
       class(run_state_type), intent(inout) :: self
       class(observer_type), intent(inout), optional :: observer

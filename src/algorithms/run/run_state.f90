@@ -14,22 +14,24 @@ module mfv_run_state
    use mfv_load_extremes, only: candidate_count, load_extremes_type, most_rows, slip_range_type
    use mfv_load_summary, only: load_summary_type
    use mfv_motions, only: motion_count
-   use mfv_slip_zones, only: segment_start_type, slip_record_type
+   use mfv_slip_zones, only: slip_record_type
    use mfv_status, only: MFV_COMPLETE
    use mfv_wear_block, only: wear_block_type
    implicit none
    private
-   public :: run_state_type, run_record_type, saved_run_type, snapshot_type, trial_type, sensitivity_type
+   public :: run_state_type, run_record_type, saved_run_type, snapshot_type, wear_trial_type, sensitivity_type
    public :: history_events, history_steps, history_none
-   public :: states_reversals, states_steps, states_none, states_last_cycle
+   public :: states_auto, states_reversals, states_steps, states_none, states_last_cycle, most_turning_points
    public :: mark_loading, mark_reversal, mark_return, mark_cycle_start, mark_pending, mark_candidate, mark_last_cycle, &
              mark_yield, mark_turn, mark_count, mark_of, rows_of_yield
 
    !> Records of the load history, in the order of the key &output history: one for every event, one for every step end, none.
    integer, parameter :: history_events = 1, history_steps = 2, history_none = 3
-   !> Snapshots, in the order of the key &output states: at the ends of steps and at every turning point of a step with cycles; of
-   !> steps alone; none; or at the ends of steps and the turning points of the last cycle of a step.
-   integer, parameter :: states_reversals = 1, states_steps = 2, states_none = 3, states_last_cycle = 4
+   !> Snapshots, in the order of the key &output states: at the ends of steps and at every turning point of a step with cycles, or
+   !> of its last cycle if there are more than most_turning_points; at every turning point; of steps alone; none; or at the ends of
+   !> steps and the turning points of the last cycle of a step.
+   integer, parameter :: states_auto = 1, states_reversals = 2, states_steps = 3, states_none = 4, states_last_cycle = 5
+   integer, parameter :: most_turning_points = 100
 
    !> States stored for the last step with cycles: the start of the step, the reversal of its last complete cycle, the end of that
    !> cycle (with `reversal` 0 before the first: the start of the step), and its start.
@@ -55,12 +57,12 @@ module mfv_run_state
    end type snapshot_type
 
    !> The current step: the loads at both of its ends, and its cycle.
-   type :: leg_type
-      !> Of the next or current load segment; 0: no current step.
+   type :: current_step_type
+      !> The next or current of its load segments; 0: no current step.
       integer :: number = 0
       type(load_type) :: there(motion_count), back(motion_count)
       type(cycle_type) :: cycle
-   end type leg_type
+   end type current_step_type
 
    !> What a run carries along besides states and texts, of a fixed size.
    type :: run_record_type
@@ -72,7 +74,7 @@ module mfv_run_state
       integer :: failed_step = 0, steps_done = 0
       !> The same for the steps of the scene only; other steps may come between them.
       integer :: failed_scene_step = 0, scene_steps_done = 0
-      type(leg_type) :: leg
+      type(current_step_type) :: current
       !> Slip zones of all segments so far.
       type(slip_record_type) :: slip
       !> Extremes of the present stretch: since the start of a cycle, the first row of &history, or the start.
@@ -104,7 +106,7 @@ module mfv_run_state
    end type saved_run_type
 
    !> A block of cycles of wear that the next computed cycle will judge, and all that it takes to try a shorter one.
-   type :: trial_type
+   type :: wear_trial_type
       !> Cycles of the block; 0: as many as the predicted change allows.
       integer :: cycles = 0
       !> Correction of the block before, which is worn with this one, length, shape (nodes).
@@ -117,7 +119,7 @@ module mfv_run_state
       logical :: settles = .false.
       !> The start of the block: the end of its first cycle.
       type(saved_run_type) :: start
-   end type trial_type
+   end type wear_trial_type
 
    !> Change of the final state if all coefficients of friction are multiplied by 1 + `perturbation` (see mfv_sensitivity).
    type :: sensitivity_type
@@ -141,9 +143,8 @@ module mfv_run_state
       integer :: keep_states = states_reversals
       !> x at which history records have the stress along the surface, with the largest tension; unallocated: none.
       real(wp), allocatable :: stress_at
-      !> The current load segment, and its start.
+      !> The current load segment.
       type(segment_type) :: segment
-      type(segment_start_type) :: start
       !> Checksums of the load history up to the end of every step, if history or states are kept; the first `load_summary%steps`
       !> are in use.
       integer(int64), allocatable :: history_checksums(:)
@@ -152,9 +153,9 @@ module mfv_run_state
       !> The sensitivity of the present state to round-off, if computed (see mfv_sensitivity).
       type(sensitivity_type), allocatable :: sensitivity
       !> The present block of cycles of wear, if there is one.
-      type(trial_type), allocatable :: trial
-      !> Whether the start of each segment is stored in `restart`: its path and its record. Marks and slip ranges do not change
-      !> within a segment.
+      type(wear_trial_type), allocatable :: wear_trial
+      !> Whether the start of each segment is stored in `restart`: its path, its record and its message. The slip range and the
+      !> marks that segments before it have set do not change within a segment; others are set again.
       logical :: keep_restart = .false.
       type(saved_run_type) :: restart
    contains
@@ -165,6 +166,7 @@ module mfv_run_state
       procedure :: drop_snapshots
       procedure :: set_mark
       procedure :: padded
+      procedure :: keeps_last_cycle
       procedure :: ends_with_cycle
       procedure :: stretch
    end type run_state_type
@@ -192,15 +194,17 @@ contains
       if (allocated(saved%last_cycle) .and. self%keep_history == history_none) self%cycles = [saved%last_cycle]
    end subroutine restore
 
-   !> Store the restart state at the start of a segment, unless that of a block of wear still counts.
+   !> Store the restart state between two segments, unless that of a block of wear that is not judged yet counts. Cycles, history
+   !> records and snapshots are written as they are then: those of this time are the first of them.
    subroutine note_restart(self)
       class(run_state_type), intent(inout) :: self
 
-      if (allocated(self%trial)) then
-         if (self%trial%is_worn) return
+      if (allocated(self%wear_trial)) then
+         if (self%wear_trial%is_worn) return
       end if
       call self%contact%save_to(self%restart%contact, with_solver=.false.)
       self%restart%position%run_record_type = self%run_record_type
+      self%restart%position%message = self%message
    end subroutine note_restart
 
    !> Keep the present state as a snapshot.
@@ -218,7 +222,7 @@ contains
       self%snapshots(self%snapshot_count) = snapshot_type(self%contact%state, step, reversal, self%contact%model%added)
    end subroutine take_snapshot
 
-   !> Remove the states of the present step.
+   !> Remove the snapshots of the present step, also from a restart and from the start of a block of wear: others take their places.
    subroutine drop_snapshots(self)
       class(run_state_type), intent(inout) :: self
 
@@ -226,6 +230,13 @@ contains
          if (self%snapshots(self%snapshot_count)%step /= self%steps_done + 1) exit
          self%snapshot_count = self%snapshot_count - 1
       end do
+      associate (restart => self%restart%position)
+         restart%snapshot_count = min(restart%snapshot_count, self%snapshot_count)
+      end associate
+      if (.not. allocated(self%wear_trial)) return
+      associate (start => self%wear_trial%start%position)
+         start%snapshot_count = min(start%snapshot_count, self%snapshot_count)
+      end associate
    end subroutine drop_snapshots
 
    !> Store the present state as mark `mark`.
@@ -257,6 +268,14 @@ contains
       call state%widen(self%contact%model%added - snapshot%added)
       call self%contact%model%displace(state%fields)
    end function padded
+
+   !> Whether only the states of the last cycle of the current step are kept.
+   pure logical function keeps_last_cycle(self)
+      class(run_state_type), intent(in) :: self
+
+      keeps_last_cycle = self%keep_states == states_last_cycle .or. &
+                         (self%keep_states == states_auto .and. self%current%number > most_turning_points)
+   end function keeps_last_cycle
 
    !> Whether the extremes are those of the last complete cycle.
    pure logical function ends_with_cycle(self)

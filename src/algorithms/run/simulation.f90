@@ -8,8 +8,8 @@ module mfv_simulation
    use mfv_error, only: error_type
    use mfv_extreme_states, only: note_extremes
    use mfv_kinds, only: wp
-   use mfv_load_cycles, only: begin_cycles, complete_leg, is_steady, wears
-   use mfv_load_segment, only: apply_leg, start_of, target_of
+   use mfv_load_cycles, only: begin_cycles, complete_cycle_segment, is_steady, restart_cycle, wears
+   use mfv_load_segment, only: reach_targets, start_of, target_of
    use mfv_motions, only: motion_count, motion_approach, motion_shift, control_displacement, control_keep
    use mfv_node_status, only: event_none, event_step_end, event_stopped
    use mfv_observer, only: observer_type
@@ -22,12 +22,14 @@ module mfv_simulation
    use mfv_wear_cycles, only: apply_block, block_failed, block_is_due, plan_block, shorten_block
    implicit none
    private
-   public :: simulation_type, new_simulation, snapshot_type, trial_type, sensitivity_type
+   public :: simulation_type, new_simulation, snapshot_type, wear_trial_type, sensitivity_type
    public :: history_events, history_steps, history_none
-   public :: states_reversals, states_steps, states_none, states_last_cycle
+   public :: states_auto, states_reversals, states_steps, states_none, states_last_cycle, most_turning_points
    public :: mark_loading, mark_reversal, mark_return, mark_cycle_start, mark_yield, mark_turn, mark_count
 
    type, extends(run_state_type) :: simulation_type
+      !> Segments of the scene before each step, and of all steps, for progress, shape (steps + 1).
+      integer, allocatable, private :: segments_before(:)
    contains
       procedure :: run
       procedure :: advance
@@ -41,14 +43,20 @@ module mfv_simulation
 contains
 
    !> A simulation of a scene, at its start. Its outcome is MFV_INPUT_ERROR if the scene has a fault. `keep_history`:
-   !> history_events, history_steps or history_none. `keep_states`: states_reversals (default), states_steps or states_none.
+   !> history_events, history_steps or history_none. `keep_states`: see states_auto
+   !> and so on; states_reversals by default.
    function new_simulation(scene, keep_history, keep_states) result(self)
       type(scene_type), intent(in) :: scene
       integer, intent(in) :: keep_history
       integer, intent(in), optional :: keep_states
       type(simulation_type) :: self
+      integer :: i
 
-      allocate (self%marks(mark_count))
+      allocate (self%marks(mark_count), self%segments_before(size(scene%steps) + 1))
+      self%segments_before(1) = 0
+      do i = 1, size(scene%steps)
+         self%segments_before(i + 1) = self%segments_before(i) + scene%steps(i)%segments()
+      end do
       self%message = trim(scene%fault())
       if (self%message /= '') then
          self%outcome = MFV_INPUT_ERROR
@@ -80,23 +88,19 @@ contains
       has_segments_left = self%outcome == MFV_COMPLETE .and. self%scene_steps_done < size(self%contact%model%scene%steps)
    end function has_segments_left
 
-   !> Run the next segment of the steps of the scene: a step, or half a cycle.
+   !> Run the next segment of the steps of the scene: a step, or to the next turning point of its cycles.
    subroutine run_segment(self, observer)
       class(simulation_type), intent(inout) :: self
       class(observer_type), intent(inout), optional :: observer
       type(step_type) :: step
-      integer :: before, i, segments
+      integer :: i
 
       i = self%scene_steps_done + 1
-      associate (steps => self%contact%model%scene%steps)
-         step = steps(i)  ! a copy, since the model may be replaced
-         before = sum(steps(:i - 1)%segments())
-         segments = sum(steps%segments())
-      end associate
-      call advance_segment(self, step, before, segments, observer)
+      step = self%contact%model%scene%steps(i)  ! a copy, since the model may be replaced
+      call advance_segment(self, step, self%segments_before(i), self%segments_before(size(self%segments_before)), observer)
       if (self%outcome /= MFV_COMPLETE) then
          self%failed_scene_step = i
-      else if (self%leg%number == 0) then
+      else if (self%current%number == 0) then
          self%scene_steps_done = i
       end if
    end subroutine run_segment
@@ -109,11 +113,11 @@ contains
 
       do while (self%outcome == MFV_COMPLETE)
          call advance_segment(self, step, 0, step%segments(), observer)
-         if (self%leg%number == 0) exit
+         if (self%current%number == 0) exit
       end do
    end subroutine advance
 
-   !> Apply the loads of the next segment of a step; the step is complete when leg%number is 0. `before`, `segments`: number of
+   !> Apply the loads of the next segment of a step; the step is complete when current%number is 0. `before`, `segments`: number of
    !> segments before this step and of all segments, for progress.
    subroutine advance_segment(self, step, before, segments, observer)
       class(simulation_type), intent(inout) :: self
@@ -127,7 +131,7 @@ contains
       if (allocated(self%estimate)) deallocate (self%estimate)
       if (allocated(self%sensitivity)) deallocate (self%sensitivity)
       if (self%keep_restart) call self%note_restart()
-      if (self%leg%number == 0) call begin_step(self, step)
+      if (self%current%number == 0) call begin_step(self, step)
       if (.not. block_is_due(self)) call complete_segment(self, step, before, segments, observer, error)
       if (block_is_due(self) .and. .not. allocated(error)) call apply_block(self, step, before, segments, observer, error)
       if (allocated(error)) then
@@ -137,13 +141,13 @@ contains
          end if
       end if
       if (self%keep_history /= history_none) &
-         call self%contact%record(merge(event_stopped, event_step_end, allocated(error)), 0, 0, self%segment%step)
+         call self%contact%record(merge(event_stopped, event_step_end, allocated(error)), 0, 0, self%steps_done + 1)
       if (allocated(error)) then
          call end_step_early(self, step, error)
          return
       end if
       if (allocated(self%stress_at) .and. self%keep_history /= history_none) call record_surface(self%contact, self%stress_at)
-      associate (i => self%leg%number)
+      associate (i => self%current%number)
          is_last = i == step%segments()
          if (.not. is_last .and. mod(i, step%turns()) == 0 .and. step%steady_tolerance > 0.0_wp) is_last = is_steady(self, step)
          if (keeps_state(self, step, is_last)) call self%take_snapshot(self%steps_done + 1, i)
@@ -160,11 +164,13 @@ contains
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
 
-      call apply_leg(self, step, before, segments, observer, error)
+      if (step%cycles > 0 .and. self%current%number > 1 .and. mod(self%current%number, step%turns()) == 1 .and. &
+          self%contact%model%scene%wear%acts()) call restart_cycle(self)
+      call reach_targets(self, step, before, segments, observer, error)
       if (allocated(error)) return
       call note_extremes(self, step)
       if (step%cycles == 0) return
-      call complete_leg(self, self%leg%number, step%turns(), self%leg%cycle)
+      call complete_cycle_segment(self, step%turns())
       if (wears(self, step)) call plan_block(self, step)
    end subroutine complete_segment
 
@@ -174,9 +180,9 @@ contains
       type(step_type), intent(in) :: step
       integer :: i
 
-      if (allocated(self%trial)) deallocate (self%trial)
+      if (allocated(self%wear_trial)) deallocate (self%wear_trial)
       call self%load_summary%add(step)
-      self%leg%number = 1
+      self%current%number = 1
       do i = 1, motion_count
          if (step%control(i) /= control_keep) call self%contact%begin_motion(i)
       end do
@@ -190,12 +196,12 @@ contains
       type(step_type), intent(in) :: step
       type(contact_state_type), intent(in) :: start
 
-      self%leg%there = target_of(self%load, step%control, step%target)
-      self%leg%back = start_of(start%fields%force, start%fields%motion, self%leg%there)
+      self%current%there = target_of(self%load, step%control, step%target)
+      self%current%back = start_of(start%fields%force, start%fields%motion, self%current%there)
       associate (contact => self%contact)
          if (allocated(contact%derivatives)) &
             call contact%derivatives%begin_step(contact%parameters, self%steps_done + 1, step%control, allocated(step%path), &
-                                                self%leg%there%control)
+                                                self%current%there%control)
       end associate
    end subroutine set_ends
 
@@ -206,11 +212,11 @@ contains
       type(step_type), intent(in) :: step
       logical, intent(in) :: is_last
 
-      keeps_state = self%keep_states == states_reversals .or. &
+      keeps_state = any(self%keep_states == [states_auto, states_reversals]) .or. &
                     (self%keep_states == states_steps .and. is_last .and. .not. step%is_passed)
-      if (self%keep_states /= states_last_cycle) return
+      if (.not. self%keeps_last_cycle()) return
       keeps_state = .not. step%is_passed
-      if (step%cycles > 0 .and. mod(self%leg%number, step%turns()) == 1) call self%drop_snapshots()
+      if (step%cycles > 0 .and. mod(self%current%number, step%turns()) == 1) call self%drop_snapshots()
    end function keeps_state
 
    !> Complete a step.
@@ -219,15 +225,16 @@ contains
       type(step_type), intent(in) :: step
       integer :: cycles
 
-      if (allocated(self%trial)) deallocate (self%trial)
-      cycles = (self%leg%number - 1)/step%turns()
-      self%leg%number = 0
+      if (allocated(self%wear_trial)) deallocate (self%wear_trial)
+      cycles = (self%current%number - 1)/step%turns()
+      self%current%number = 0
       self%steps_done = self%steps_done + 1
       self%message = 'step '//to_text(self%steps_done)//' was reached'
       if (step%cycles > cycles) self%message = self%message//', steady after '//to_text(cycles)//' of '// &
                                                to_text(step%cycles)//' cycles'
-      if (step%cycles > cycles .and. self%leg%cycle%walks()) &
-         self%message = self%message//' but walking: each moves the upper body by '//to_text(self%leg%cycle%drift(motion_shift), 4)
+      if (step%cycles > cycles .and. self%current%cycle%walks()) &
+         self%message = self%message//' but walking: each moves the upper body by '// &
+                        to_text(self%current%cycle%drift(motion_shift), 4)
       call note_history_checksum(self, step)
    end subroutine end_step
 
@@ -239,9 +246,11 @@ contains
 
       self%outcome = error%status
       self%message = error%message//trim(hint_of_datum(self))
-      if (allocated(step%path)) self%message = 'row '//to_text(step%row + mod(self%leg%number - 1, step%turns()))//', cycle '// &
-                                               to_text(1 + (self%leg%number - 1)/step%turns())//': '//self%message
-      self%leg%number = 0
+      associate (number => self%current%number, turns => step%turns())
+         if (allocated(step%path)) self%message = 'row '//to_text(step%row + mod(number - 1, turns))//', cycle '// &
+                                                  to_text(1 + (number - 1)/turns)//': '//self%message
+      end associate
+      self%current%number = 0
       self%failed_step = self%steps_done + 1
       call note_history_checksum(self, step)
    end subroutine end_step_early
@@ -292,7 +301,7 @@ contains
       call self%contact%restore(self%restart%contact)
       self%run_record_type = self%restart%position%run_record_type
       self%history_checksums = [(0_int64, i=1, self%load_summary%steps)]
-      if (self%steps_done > 0) self%message = 'step '//to_text(self%steps_done)//' was reached'
+      self%message = self%restart%position%message
    end subroutine resume
 
    !> Add a completed step to the checksum of the load history: its controls and targets, and its final state.

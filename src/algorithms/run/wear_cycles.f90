@@ -9,7 +9,7 @@ module mfv_wear_cycles
    use mfv_motions, only: motion_count, motion_approach, motion_wear, control_displacement, control_force
    use mfv_node_status, only: in_contact
    use mfv_observer, only: observer_type
-   use mfv_run_state, only: mark_cycle_start, run_state_type, states_last_cycle, trial_type
+   use mfv_run_state, only: mark_cycle_start, run_state_type, wear_trial_type
    use mfv_scene, only: step_type
    use mfv_status, only: MFV_INTERRUPTED
    use mfv_wear_block, only: find_wear_block, wear_block_type, widened, work_of_wear
@@ -35,31 +35,31 @@ contains
       cycles = 0
       allocate (correction(self%contact%model%nodes()), source=0.0_wp)
       associate (wear => self%contact%model%scene%wear)
-         if (allocated(self%trial)) then
+         if (allocated(self%wear_trial)) then
             call find_wear_block(self%contact, cycle_work(self), 1, 1, is_pressed(self), next)
-            if (self%trial%block%cycles > 1 .and. .not. allocated(self%trial%settling)) then
-               self%trial%settling = next%depth
-               self%trial%settles = .true.
+            if (self%wear_trial%block%cycles > 1 .and. .not. allocated(self%wear_trial%settling)) then
+               self%wear_trial%settling = next%depth
+               self%wear_trial%settles = .true.
                return
             end if
             call judge_block(self, next, correction, error)
             factor = largest
             if (error > 0.0_wp) factor = min(max(safety*sqrt(part*wear%tolerance/error), smallest), largest)
-            cycles = max(int(factor*max(self%trial%block%cycles, 2)), 1)
-            if (self%trial%block%cycles > 1 .and. wear%block > 0) then
-               self%contact%state%wear_error = self%contact%state%wear_error + error*self%leg%cycle%worn_area
-            else if (self%trial%block%cycles > 1 .and. error > part*wear%tolerance) then
+            cycles = max(int(factor*max(self%wear_trial%block%cycles, 2)), 1)
+            if (self%wear_trial%block%cycles > 1 .and. wear%block > 0) then
+               self%contact%state%wear_error = self%contact%state%wear_error + error*self%current%cycle%worn_area
+            else if (self%wear_trial%block%cycles > 1 .and. error > part*wear%tolerance) then
                call shorten_block(self, factor)
                return
             end if
-            deallocate (self%trial)
+            deallocate (self%wear_trial)
          end if
          if (wear%block > 0) cycles = wear%block
-         if (self%leg%cycle%number == 1) cycles = 1
+         if (self%current%cycle%number == 1) cycles = 1
       end associate
-      allocate (self%trial)
-      self%trial%cycles = min(cycles, most_worn_at_once(self, step))
-      call move_alloc(correction, self%trial%correction)
+      allocate (self%wear_trial)
+      self%wear_trial%cycles = min(cycles, most_worn_at_once(self, step))
+      call move_alloc(correction, self%wear_trial%correction)
    end subroutine plan_block
 
    !> Correction of the depth of the last block, length, shape (nodes), and its error relative to all that is worn; `next`: of the
@@ -72,8 +72,8 @@ contains
       real(wp) :: settling(size(next%depth))
 
       settling = 0.0_wp
-      if (allocated(self%trial%settling)) settling = widened(self%trial%settling, size(settling))
-      call self%trial%block%judge(settling, next%depth, self%contact%state%worn, self%contact%model%width, correction, error)
+      if (allocated(self%wear_trial%settling)) settling = widened(self%wear_trial%settling, size(settling))
+      call self%wear_trial%block%judge(settling, next%depth, self%contact%state%worn, self%contact%model%width, correction, error)
    end subroutine judge_block
 
    !> Most cycles of the block that begins with the present one.
@@ -81,7 +81,7 @@ contains
       class(run_state_type), intent(in) :: self
       type(step_type), intent(in) :: step
 
-      most = max(step%cycles - self%leg%number/step%turns() - 1, 1)
+      most = max(step%cycles - self%current%number/step%turns() - 1, 1)
    end function most_worn_at_once
 
    !> Friction work of the cycle that ends here per unit of surface, force/length, shape (nodes).
@@ -106,7 +106,7 @@ contains
       class(run_state_type), intent(in) :: self
 
       block_is_due = .false.
-      if (allocated(self%trial)) block_is_due = self%trial%settles .or. .not. self%trial%is_worn
+      if (allocated(self%wear_trial)) block_is_due = self%wear_trial%settles .or. .not. self%wear_trial%is_worn
    end function block_is_due
 
    !> Whether a shorter block may do without an error in the wear or the cycle after it.
@@ -115,27 +115,27 @@ contains
       type(error_type), intent(in) :: error
 
       block_failed = .false.
-      if (allocated(self%trial)) block_failed = self%trial%is_worn .and. self%trial%block%cycles > 1 .and. &
-                                                self%contact%model%scene%wear%block == 0 .and. error%status /= MFV_INTERRUPTED
+      if (allocated(self%wear_trial)) block_failed = self%wear_trial%is_worn .and. self%wear_trial%block%cycles > 1 .and. &
+                                                     self%contact%model%scene%wear%block == 0 .and. error%status /= MFV_INTERRUPTED
    end function block_failed
 
    !> Go back to the start of the present block, and plan one whose cycles are the part `factor` of it.
    subroutine shorten_block(self, factor)
       class(run_state_type), intent(inout) :: self
       real(wp), intent(in) :: factor
-      type(trial_type), allocatable :: trial
+      type(wear_trial_type), allocatable :: trial
       type(solver_work_type) :: work
 
-      call move_alloc(self%trial, trial)
+      call move_alloc(self%wear_trial, trial)
       work = self%contact%system%solver_work_type
       call self%restore(trial%start)
       self%contact%system%solver_work_type = work
-      if (self%keep_states == states_last_cycle) call self%drop_snapshots()
+      self%cycles(self%cycle_count)%block = 1
       trial%cycles = max(int(factor*trial%block%cycles), 1)
       trial%is_worn = .false.
       trial%settles = .false.
       if (allocated(trial%settling)) deallocate (trial%settling)
-      call move_alloc(trial, self%trial)
+      call move_alloc(trial, self%wear_trial)
    end subroutine shorten_block
 
    !> Note the start of the present block in `trial`, for shorter ones and for a restart.
@@ -143,8 +143,8 @@ contains
       class(run_state_type), intent(inout) :: self
 
       if (self%keep_restart) call self%note_restart()
-      call self%save_to(self%trial%start)
-      self%trial%is_worn = .true.
+      call self%save_to(self%wear_trial%start)
+      self%wear_trial%is_worn = .true.
    end subroutine note_block
 
    !> Wear the surfaces by the planned block of cycles that the present one begins, under constant loads, and by the correction of
@@ -159,7 +159,7 @@ contains
       integer :: turns
 
       turns = step%turns()
-      associate (trial => self%trial, contact => self%contact)
+      associate (trial => self%wear_trial, contact => self%contact)
          if (trial%settles) then
             trial%settles = .false.
             call wear_by(self, widened(trial%settling, contact%model%nodes()), step, before, segments, observer, error)
@@ -172,22 +172,23 @@ contains
             trial%correction = widened(trial%correction, contact%model%nodes())
          end do
          call note_block(self)
-         call wear_by(self, max(trial%block%depth + trial%correction, -contact%state%worn), step, before, segments, observer, error)
+         depth = max(trial%block%depth + trial%correction, -contact%state%worn)
+         call wear_by(self, depth, step, before, segments, observer, error)
          if (allocated(error)) return
          ! The mesh may have grown meanwhile.
+         skipped = widened(depth - trial%block%first, contact%model%nodes())
          depth = widened(trial%block%depth, contact%model%nodes())
-         skipped = widened(trial%block%depth - trial%block%first + trial%correction, contact%model%nodes())
          call contact%state%skip(contact%model%width, work_of_wear(contact%model, skipped))
          associate (cycles => trial%block%cycles)
             if (cycles == 1 .and. trial%block%change > contact%model%scene%wear%tolerance) &
                contact%state%coarsely_worn = contact%state%coarsely_worn + contact%model%force(depth)
             self%cycles_done = self%cycles_done + cycles - 1
-            self%leg%number = self%leg%number + turns*(cycles - 1)
+            self%current%number = self%current%number + turns*(cycles - 1)
             self%cycles(self%cycle_count)%block = cycles
          end associate
       end associate
-      if (self%leg%cycle%number == 1 .or. self%leg%number == step%segments() .or. self%contact%model%scene%wear%block == 1) &
-         deallocate (self%trial)
+      if (self%current%cycle%number == 1 .or. self%current%number == step%segments() .or. &
+          self%contact%model%scene%wear%block == 1) deallocate (self%wear_trial)
    end subroutine apply_block
 
    !> Wear the surfaces by `depth`, length, shape (nodes), under the present loads.

@@ -298,7 +298,8 @@ contains
       real(wp), intent(in) :: force, shift
 
       if (.not. self%leaving%pending) return
-      if (.not. abs(force) > visible*self%model%friction_scale*self%state%fields%force(motion_approach)) return
+      if (.not. abs(force) > self%model%friction_scale*max(visible*self%state%fields%force(motion_approach), &
+                                                           certified*self%certificate%force_scale(motion_approach))) return
       self%leaving%pending = .false.
       if (abs(force) < self%model%largest_stiffness()*abs(shift)) self%leaving%stiffness = force/shift
    end subroutine note_stiffness

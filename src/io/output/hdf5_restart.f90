@@ -15,10 +15,10 @@ module mfv_hdf5_restart
    use mfv_history, only: history_record_type, history_type
    use mfv_kinds, only: wp
    use mfv_contact_system, only: solver_work_type
-   use mfv_motions, only: motions, all_motions => motion_count, motion_count => user_motions
+   use mfv_motions, only: motions, motion_count, user_motions
    use mfv_node_status, only: node_creep_left, node_open
    use mfv_result_fields, only: along_nothing, field_type, list_type, step_group
-   use mfv_run_state, only: mark_count, run_record_type, snapshot_type, trial_type
+   use mfv_run_state, only: mark_count, run_record_type, snapshot_type, wear_trial_type
    use mfv_scene, only: step_type
    use mfv_simulation, only: simulation_type
    use mfv_status, only: MFV_INPUT_ERROR
@@ -36,14 +36,16 @@ module mfv_hdf5_restart
    integer, parameter :: most = 1000000000
    character(*), parameter :: internal = 'internal values of this version of MFV, for --resume'
 
-   !> All of a run that has a fixed size.
+   !> All of a run that has a fixed size. None of it may have allocatable components.
    type :: numbers_type
       type(path_record_type) :: path
       type(run_record_type) :: run
       type(solver_work_type) :: work
       !> See saved_path_type.
       integer :: records = 0, added = 0
-      logical :: tangential = .false., moves(all_motions) = .false.
+      logical :: tangential = .false., moves(motion_count) = .false.
+      !> Of the last step that was reached.
+      character(len=240) :: message = ''
    end type numbers_type
 
    !> One group of a file that is written or read.
@@ -75,7 +77,7 @@ contains
       copy%position_type = simulation%position_type
       copy%restart = simulation%restart
       if (allocated(simulation%cycles)) copy%cycles = simulation%cycles
-      if (allocated(simulation%trial)) call copy_trial(simulation, copy)
+      if (allocated(simulation%wear_trial)) call copy_trial(simulation, copy)
       copy%contact%model = simulation%contact%model
       copy%contact%history = simulation%contact%history
       associate (saved => copy%restart%contact)
@@ -103,10 +105,10 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(simulation_type), intent(inout) :: copy
 
-      associate (trial => simulation%trial)
-         allocate (copy%trial)
-         copy%trial%cycles = trial%cycles
-         copy%trial%correction = widened(trial%correction, simulation%contact%model%nodes())
+      associate (trial => simulation%wear_trial)
+         allocate (copy%wear_trial)
+         copy%wear_trial%cycles = trial%cycles
+         copy%wear_trial%correction = widened(trial%correction, simulation%contact%model%nodes())
          if (.not. trial%is_worn) return
          copy%position_type = trial%start%position
          if (allocated(trial%start%last_cycle)) copy%cycles = [trial%start%last_cycle]
@@ -153,7 +155,7 @@ contains
       nodes = simulation%contact%model%nodes()
       wears = simulation%contact%model%scene%wear%acts()
       if (self%reading) call read_snapshots(self, simulation)
-      if (wears) call exchange_trial(self, nodes, simulation%trial)
+      if (wears) call exchange_trial(self, nodes, simulation%wear_trial)
       call exchange_cycles(self, simulation)
       call exchange_history(self, simulation%restart%contact%records, simulation%contact%history)
       call exchange_state(self, 'state_', nodes, wears, simulation%restart%contact%position%state)
@@ -189,7 +191,7 @@ contains
 
       associate (saved => simulation%restart%contact, run => simulation%restart%position%run_record_type)
          numbers = numbers_type(saved%position%path_record_type, run, saved%work, saved%records, saved%added, saved%tangential, &
-                                saved%moves)
+                                saved%moves, simulation%restart%position%message)
          list = transfer(numbers, [0])
          list = [list, checksum_of(list)]
          call self%exchange('numbers', list, internal)
@@ -207,6 +209,7 @@ contains
             saved%added = numbers%added
             saved%tangential = numbers%tangential
             saved%moves = numbers%moves
+            simulation%restart%position%message = trim(numbers%message)
             call adapt_model(simulation%contact%model, saved%added, saved%tangential, saved%moves)
          end if
          simulation%run_record_type = run
@@ -307,7 +310,7 @@ contains
    subroutine exchange_trial(self, nodes, trial)
       type(exchange_type), intent(inout) :: self
       integer, intent(in) :: nodes
-      type(trial_type), allocatable, intent(inout) :: trial
+      type(wear_trial_type), allocatable, intent(inout) :: trial
       integer :: begins
 
       begins = merge(1, 0, allocated(trial))
@@ -334,7 +337,7 @@ contains
       if (self%reading) state = new_contact_state(nodes, wears)
       self%prefix = prefix
       call exchange_visible(self, state)
-      call exchange_motions(self, state, motions(:motion_count)%optional)
+      call exchange_motions(self, state, motions(:user_motions)%optional)
       call self%exchange('skipped_dissipation', state%skipped_dissipation, 'energy dissipated in cycles that are not computed')
       call self%exchange('friction_work', state%friction_work, 'energy dissipated per unit of surface')
       call self%exchange('cycle_work', state%cycle_work, 'magnitudes of the friction work of this cycle')
@@ -362,7 +365,7 @@ contains
       if (any(state%status < node_open .or. state%status > node_creep_left)) call self%complain('status')
       call self%exchange('pressure', state%fields%pressure, 'pressure')
       call self%exchange('shear', state%fields%shear, 'shear traction')
-      call exchange_motions(self, state,.not. motions(:motion_count)%optional)
+      call exchange_motions(self, state,.not. motions(:user_motions)%optional)
       call self%exchange('dissipation', state%dissipation, 'energy dissipated so far')
    end subroutine exchange_visible
 
@@ -370,10 +373,10 @@ contains
    subroutine exchange_motions(self, state, which)
       type(exchange_type), intent(inout) :: self
       type(contact_state_type), intent(inout) :: state
-      logical, intent(in) :: which(motion_count)
+      logical, intent(in) :: which(user_motions)
       integer :: i
 
-      do i = 1, motion_count
+      do i = 1, user_motions
          if (.not. which(i)) cycle
          call self%exchange(trim(motions(i)%key), state%fields%motion(i), trim(motions(i)%key))
          call self%exchange(trim(motions(i)%force_key), state%fields%force(i), trim(motions(i)%force_name))
@@ -395,7 +398,7 @@ contains
             self%group = step_group(i)
             snapshot%state = new_contact_state(model%nodes(), model%scene%wear%acts())
             call exchange_visible(self, snapshot%state)
-            call exchange_motions(self, snapshot%state, motions(:motion_count)%optional .and. model%moves(:motion_count))
+            call exchange_motions(self, snapshot%state, motions(:user_motions)%optional .and. model%moves(:user_motions))
             if (model%tangential) call self%exchange('friction_work', snapshot%state%friction_work, '')
             if (model%scene%wear%acts()) call self%exchange('wear_depth', snapshot%state%worn, '')
             call self%exchange('step', snapshot%step, '', 1, size(model%scene%steps))
