@@ -362,6 +362,7 @@ contains
       !> Of a fit, whose stress is largest anywhere around the circle, more.
       integer, parameter :: between = 12, around = 60
       logical :: is_sample(model%nodes())
+      logical, allocatable :: inside(:)
       integer, allocatable :: nodes(:)
       complex(wp), allocatable :: integrals(:)
       integer :: most_between, i, j
@@ -384,6 +385,11 @@ contains
       integrals = cauchy_integrals(model, state, patches, nodes)
       samples%of_shear = aimag(integrals)
       samples%of_pressure = real(integrals, wp)
+      if (.not. any(patches%to_first > 0.0_wp)) return
+      ! A patch that continues in the first one has no edge where the surfaces repeat.
+      inside = .not. model%scene%repeats_beyond(samples%arc)
+      samples = surface_samples_type(pack(samples%arc, inside), pack(samples%pressure, inside), pack(samples%shear, inside), &
+                                     pack(samples%of_pressure, inside), pack(samples%of_shear, inside))
    end subroutine sample_surface
 
    !> 1/pi integrals of p + i tau over t - x dt at `nodes` and at the left and the right edges of all patches, force/length^2. The
