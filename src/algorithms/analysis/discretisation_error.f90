@@ -771,15 +771,17 @@ contains
       !> In intervals; narrow of stick zones of few nodes between opposite slip; grown_to_end where fewer than two nodes slip beside
       !> the stick zone; worn where the outermost node is, since the pressure vanishes otherwise there; cornered over the number of
       !> nodes of the patch: around a corner in contact the pressure has an error of the first order, which moves the edges in
-      !> second order.
+      !> second order; layered times the squared interval over the thickness of a layer, within which the pressure vanishes as a
+      !> root, up to layered_at_most.
       real(wp), parameter :: coupled = 0.02_wp, receded = 0.5_wp, worn = 0.5_wp, grown = 0.2_wp, grown_to_end = 0.25_wp, &
-                             cornered = 0.2_wp, narrow = 0.5_wp
+                             cornered = 0.2_wp, narrow = 0.5_wp, layered = 0.2_wp, layered_at_most = 0.5_wp
       integer, parameter :: fewest_alike = 4
       logical :: can_grow, depends_on_friction
       type(corner_type), allocatable :: corners(:)
-      real(wp) :: least
+      real(wp) :: least, thickness
       integer :: i, j
 
+      thickness = thinnest_layer(model%scene)
       can_grow = stick_zones_can_grow(model)
       corners = corners_of(model, state)
       depends_on_friction = model%compliance%elastic_block(block_wt) .and. pressing_shears(model)
@@ -791,8 +793,9 @@ contains
             if (depends_on_friction .and. .not. patch%right_ends) &
                patch%right_error = max(patch%right_error, width(patch%last)*merge(receded, coupled, has_receded .and. &
                                                                                 slipping_run(state, patch%last, -1) < fewest_alike))
-            least = 0.0_wp
-            if (any(corners%place > patch%left .and. corners%place < patch%right)) least = cornered/(patch%last - patch%first + 1)
+            least = min(layered*(maxval(width([patch%first, patch%last]))/thickness)**2, layered_at_most)
+            if (any(corners%place > patch%left .and. corners%place < patch%right)) &
+               least = max(least, cornered/(patch%last - patch%first + 1))
             if (.not. patch%left_ends) patch%left_error = max(patch%left_error, width(patch%first)* &
                                                               max(least, merge(worn, 0.0_wp, is_worn(patch%first))))
             if (.not. patch%right_ends) patch%right_error = max(patch%right_error, width(patch%last)* &
@@ -821,6 +824,15 @@ contains
          if (model%scene%wear%acts()) is_worn = state%worn(node) > 0.0_wp
       end function is_worn
    end subroutine widen_uncertainties
+
+   !> Thickness of the thinner one of the first layers of both bodies, length; huge without layers.
+   pure real(wp) function thinnest_layer(scene) result(thickness)
+      type(scene_type), intent(in) :: scene
+
+      thickness = huge(thickness)
+      if (scene%has_layers(.false.)) thickness = scene%lower%elasticity%depth_of(1)
+      if (scene%has_layers(.true.)) thickness = min(thickness, scene%upper%elasticity%depth_of(1))
+   end function thinnest_layer
 
    !> Whether the contact was wider than in a state by an interval or more, or the surfaces are stretched: shear tractions at the
    !> edges are then not those of one slip zone.
