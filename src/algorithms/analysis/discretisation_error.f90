@@ -43,6 +43,8 @@ module mfv_discretisation_error
    !> Least uncertainty of tensions on equal intervals, relative, over (interval/half-width)^2, for coarser meshes that agree better
    !> because their edges happen to lie alike in an interval: measured (docs/verification.md, the trailing edge).
    real(wp), parameter :: of_tensions = 0.03_wp
+   !> The same of worn surfaces, over interval/half-width: the worn part ends somewhere in an interval.
+   real(wp), parameter :: of_worn_tensions = 0.5_wp
 
 contains
 
@@ -531,9 +533,13 @@ contains
          if (.not. allocated(model%scene%mesh%ends)) then
             fineness = contact_interval(model, simulation%contact%state)/ &
                        max(0.5_wp*values(observable_place('contact_length')), model%interval())
+            fineness = of_tensions*fineness**2 + merge(of_worn_tensions*fineness, 0.0_wp, model%scene%wear%acts())
             where (observables%error == error_local .and. index(observables%name, '_tension') > 0) &
-               allowances = allowances + of_tensions*fineness**2*abs(values)
+               allowances = allowances + fineness*abs(values)
          end if
+         ! What slips within the outermost intervals while friction acts against coupling stays in the shift.
+         if (pressing_shears(model) .and. stick_zones_can_grow(model)) &
+            where (observables%name == 'shift') allowances = allowances + maxval(hidden_slip())
          call add_coarse_slip(simulation%slip, 'dissipation', 1.0_wp)
          if (.not. ieee_is_nan(values(observable_place('largest_slip_range')))) &
             call add_hidden('largest_slip_range', maxval(hidden_slip()))
@@ -772,9 +778,9 @@ contains
       !> the stick zone; worn where the outermost node is, since the pressure vanishes otherwise there; cornered over the number of
       !> nodes of the patch: around a corner in contact the pressure has an error of the first order, which moves the edges in
       !> second order; layered times the squared interval over the thickness of a layer, within which the pressure vanishes as a
-      !> root, up to layered_at_most.
+      !> root, up to layered_at_most; stuck of stick zones where the pressure depends on the shear.
       real(wp), parameter :: coupled = 0.02_wp, receded = 0.5_wp, worn = 0.5_wp, grown = 0.2_wp, grown_to_end = 0.25_wp, &
-                             cornered = 0.2_wp, narrow = 0.5_wp, layered = 0.2_wp, layered_at_most = 0.5_wp
+                             cornered = 0.2_wp, narrow = 0.5_wp, layered = 0.2_wp, layered_at_most = 0.5_wp, stuck = 0.08_wp
       integer, parameter :: fewest_alike = 4
       logical :: can_grow, depends_on_friction
       type(corner_type), allocatable :: corners(:)
@@ -805,6 +811,10 @@ contains
                   if (is_narrow_stick_zone(state%status, zone)) then
                      zone%left_error = max(zone%left_error, width(zone%first)*narrow)
                      zone%right_error = max(zone%right_error, width(zone%last)*narrow)
+                  end if
+                  if (depends_on_friction) then
+                     zone%left_error = max(zone%left_error, width(zone%first)*stuck)
+                     zone%right_error = max(zone%right_error, width(zone%last)*stuck)
                   end if
                   if (.not. can_grow) cycle
                   zone%left_error = max(zone%left_error, width(zone%first)*merge(grown_to_end, grown, &

@@ -207,13 +207,13 @@ contains
       end associate
    end function tensions_of
 
-   !> The tensions at the end and, where that may be the largest one or wear changes them, over the history.
+   !> The tensions at the end and, where that may be the largest one, over the history.
    function tensions_at_end(simulation) result(names)
       type(simulation_type), intent(in) :: simulation
       character(len=72) :: names
 
       names = tensions(simulation)
-      if (simulation%cycle_count == 0 .or. simulation%contact%model%scene%wear%acts()) names = largest_tensions(simulation)
+      if (simulation%cycle_count == 0) names = largest_tensions(simulation)
    end function tensions_at_end
 
    !> The contact patch with the fewest nodes among those that matter: that carry a part of the normal force, or the peak pressure.
