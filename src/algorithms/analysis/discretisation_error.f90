@@ -11,7 +11,7 @@ module mfv_discretisation_error
    use mfv_error_bar
    use mfv_friction, only: friction_coefficient_type
    use mfv_kinds, only: pi, wp
-   use mfv_load_extremes, only: candidate_tension, load_extremes_type
+   use mfv_load_extremes, only: candidate_tension, extreme_type, load_extremes_type
    use mfv_motions, only: bulk_motions, control_keep, motion_approach, motion_shift
    use mfv_near_field, only: near_field_type
    use mfv_node_status, only: holds, in_contact
@@ -102,13 +102,13 @@ contains
             if (peak_is_at_corner(simulation, place, values(:, 1))) estimate%bar(place) = logarithmic_bar(values(place, :))
          end do
          call drop_uncertain_places(values, estimate%bar)
-         if (simulation%contact%model%tangential) call add_rivals(simulation, observed%extremes, estimate%bar)
+         call add_rivals(simulation, observed%extremes, estimate%bar)
       end if
       simulation%estimate = estimate
    end subroutine estimate_error
 
-   !> The largest tension may be at another place where one is as large within their bars, as at both edges of a contact: its
-   !> distance is added to the bars of places. `extremes`: see find_extremes; `bars`: shape (observable_count).
+   !> The largest tension or pressure may be at another place where one is as large within their bars, as at both edges of a contact:
+   !> its distance is added to the bars of places. `extremes`: see find_extremes; `bars`: shape (observable_count).
    subroutine add_rivals(simulation, extremes, bars)
       type(simulation_type), intent(in) :: simulation
       type(load_extremes_type), intent(in) :: extremes
@@ -118,15 +118,21 @@ contains
       logical :: available
       integer :: side
 
+      call add('largest_pressure', rivals_of(extremes%pressure))
+      if (.not. simulation%contact%model%tangential) return
       do side = 1, size(body)
-         associate (found => extremes%searched(candidate_tension(side)))
-            call add('largest_'//body(side)//'_tension', largest_type(found%value, found%x, found%y, found%rival, found%rival_x))
-         end associate
+         call add('largest_'//body(side)//'_tension', rivals_of(extremes%searched(candidate_tension(side))))
          call find_largest_tension(simulation%contact%model, simulation%contact%state, side == 2, largest, available)
          if (available) call add(body(side)//'_tension', largest)
       end do
 
    contains
+
+      pure type(largest_type) function rivals_of(found)
+         type(extreme_type), intent(in) :: found
+
+         rivals_of = largest_type(found%value, found%x, found%y, found%rival, found%rival_x)
+      end function rivals_of
 
       subroutine add(name, largest)
          character(*), intent(in) :: name
