@@ -79,7 +79,6 @@ contains
       integer, intent(in) :: first, candidate
       type(load_extremes_type), intent(inout) :: extremes
       type(largest_type) :: largest
-      type(extreme_type) :: before
       logical :: available, is_left(most_rows)
       integer :: i, number
 
@@ -96,11 +95,8 @@ contains
             end if
             call find_largest(self%padded(self%marks(first + i - 1)))
             if (.not. available) exit
-            before = found
-            call found%raise(largest%value, extremes%row(i, candidate), largest%x, largest%y)
             associate (interval => self%contact%model%interval())
-               if (before%row > 0) call found%compete(before%value, before%x, interval)
-               call found%compete(largest%value, largest%x, interval)
+               call found%raise_with_rival(largest%value, extremes%row(i, candidate), interval, largest%x, largest%y)
                call found%compete(largest%rival, largest%rival_x, interval)
             end associate
          end do
