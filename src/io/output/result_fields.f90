@@ -813,7 +813,7 @@ call list%add('contact_right', simulation%contact%model%scene%x_of_arc(patches%r
       if (simulation%contact%model%scene%method%stepping == stepping_leap) then
          call list%add('increment_traction_error', simulation%contact%certificate%increment_traction_error, '1', &
                        "stepping='leap': largest estimated error of the tractions by large increments, relative to the "// &
-                       "largest traction")
+                       "largest traction; on rough surfaces a root mean square, relative to that of the tractions")
          call list%add('increment_dissipation_error', simulation%contact%certificate%increment_dissipation_error, '1', &
                        "stepping='leap': largest estimated error of the dissipation of a load segment by large increments, "// &
                        "relative to that dissipation")
