@@ -107,8 +107,8 @@ contains
       simulation%estimate = estimate
    end subroutine estimate_error
 
-   !> The largest tension or pressure may be at another place where one is as large within their bars, as at both edges of a contact:
-   !> its distance is added to the bars of places. `extremes`: see find_extremes; `bars`: shape (observable_count).
+   !> The largest tension or pressure may be at another place where one is as large within their bars, as at both edges of a
+   !> contact: its distance is added to the bars of places. `extremes`: see find_extremes; `bars`: shape (observable_count).
    subroutine add_rivals(simulation, extremes, bars)
       type(simulation_type), intent(in) :: simulation
       type(load_extremes_type), intent(in) :: extremes
