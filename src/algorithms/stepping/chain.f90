@@ -124,7 +124,7 @@ contains
    !> Whether a contact has many patches of few nodes, whose fronts are not resolved. `status`: shape (nodes).
    pure logical function is_rough(status)
       integer, intent(in) :: status(:)
-      integer, parameter :: many = 8, few = 16
+      integer, parameter :: many = 8, few = 64
       integer :: patches
 
       patches = count(in_contact(status) .and. .not. eoshift(in_contact(status), -1, .false.))
