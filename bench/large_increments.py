@@ -5,6 +5,7 @@
     PYTHONPATH=python python bench/large_increments.py held-back 40 1e-3
     PYTHONPATH=python python bench/large_increments.py growing 40 1e-2
     PYTHONPATH=python python bench/large_increments.py nonlinear 24 1e-2
+    PYTHONPATH=python python bench/large_increments.py rough 40 1e-2
 
 The first prints, for some tolerances, the linear solves and the largest error of what a cycle dissipates. The second compares
 tractions and the dissipation of every load segment in random scenes of Coulomb friction: couplings, materials, disks and a flat
@@ -12,7 +13,8 @@ punch, 101 to 401 nodes, pressing with friction, oblique loads, cycles of either
 prints the scenes above the tolerance, and how often the estimated errors bound the true ones; the third does so for other scenes of
 801 to 1201 nodes, with stepping='auto', for errors above a thousandth of the tolerance. The fourth presses what does not grow in
 proportion to its shape with full coupling: layers, waves that repeat, rounded and conforming punches, profiles. The fifth compares
-random scenes of Dahl's law and of weakening with much shorter increments.
+random scenes of Dahl's law and of weakening with much shorter increments. The last presses and shears rough surfaces with full coupling
+(needs SurfaceTopography), and prints errors of what users read.
 """
 
 from __future__ import annotations
@@ -276,11 +278,89 @@ def study_nonlinear(scenes: int, accuracy: float) -> None:
               f"dissipation of a segment {table[:, 1].max():.2f}, {np.median(table[:, 1]):.2f}")  # fmt: skip
 
 
+def rough_scene(seed: int, solver: Solver) -> Scene:
+    """Scene number `seed` of a rough surface that repeats: a press, then shear and a cycle, a second press, or oblique loads."""
+    draw = np.random.default_rng(seed)
+    nodes, points, length = int(draw.choice([512, 800, 1024, 1500, 2048])), int(draw.choice([4, 8, 8, 16])), 10.0
+    hurst, mu = float(draw.uniform(0.4, 1.0)), float(10 ** draw.uniform(-1, 0))
+    poisson, force, share = (
+        float(draw.choice([0, 0.1, 0.2, 0.3, 0.4])),
+        float(10 ** draw.uniform(-1.5, -0.5)),
+        float(draw.uniform(0.3, 0.85)),
+    )
+    profile = mfv.surfaces.self_affine(
+        nodes, length, hurst=hurst, rms_slope=0.1, roll_off=0.5, cut_off=length * points / nodes, seed=seed
+    )
+    steps = [
+        [Step(normal_force=force), Step(force_ratio=share), Step(force_ratio=-share, cycles=1)],
+        [
+            Step(normal_force=force),
+            Step(normal_force=2 * force),
+            Step(force_ratio=share),
+            Step(normal_force=1.2 * force, force_ratio=0.5 * share),
+        ],
+        [
+            Step(normal_force=force, force_ratio=0.5 * share),
+            Step(force_ratio=share),
+            Step(normal_force=0.6 * force, force_ratio=0.3 * share),
+        ],
+    ][seed % 3]
+    return Scene(
+        Body.half_plane(youngs_modulus=1 - poisson**2, poisson_ratio=poisson),
+        Body.profile(profile.x, profile.height, rigid=True),
+        mesh=Mesh(nodes=nodes, period=length),
+        friction=Friction.coulomb(mu),
+        steps=steps,
+        coupling="full",
+        solver=solver,
+        output=Output(history="steps"),
+    )
+
+
+def study_rough(scenes: int, accuracy: float) -> None:
+    names = ("tractions (rms)", "single traction", "contact length", "stick ratio", "peak shear", "dissipation of a segment")
+    rows: list[list[float]] = []
+    solves, taken = np.zeros(2, int), 0
+    for seed in range(scenes):
+        events, result = (rough_scene(seed, Solver(**how)).run() for how in ({"stepping": "event"}, {"accuracy": accuracy}))
+        if {events.outcome, result.outcome} != {"complete"}:
+            print(f"scene {seed}: {events.outcome}, {result.outcome}")
+            continue
+        solves += [events.summary.linear_solves, result.summary.linear_solves]
+        taken += result.summary.leaps > 0
+        largest = done = done_exact = 0.0
+        for one, other in zip(events.steps, result.steps):
+            exact = np.concatenate([one.pressure, one.shear])
+            wrong = np.concatenate([other.pressure, other.shear]) - exact
+            largest = max(largest, np.abs(exact).max())
+            work = one.dissipation - done_exact
+            counts = work > 0.01 * events.summary.dissipation
+            rows.append(
+                [
+                    np.linalg.norm(wrong) / np.linalg.norm(exact),
+                    np.abs(wrong).max() / largest,
+                    abs(other.contact_length / one.contact_length - 1),
+                    abs(other.stick_ratio - one.stick_ratio),
+                    abs(np.abs(other.shear).max() / np.abs(one.shear).max() - 1),
+                    abs((other.dissipation - done) / work - 1) if counts else 0.0,
+                ]
+            )
+            done, done_exact = other.dissipation, one.dissipation
+    table = np.array(rows)
+    print(f"{scenes} scenes, {taken} with large increments, {len(rows)} states; solves {solves[1]} for {solves[0]} by events")
+    for name, errors in zip(names, table.T):
+        print(
+            f"{name}: nine of ten below {np.quantile(errors, 0.9):.1e}, 95 % {np.quantile(errors, 0.95):.1e}, largest {errors.max():.1e}"
+        )
+
+
 if __name__ == "__main__":
     if sys.argv[1] == "cycles":
         study_cycles(int(sys.argv[2]))
     elif sys.argv[1] == "nonlinear":
         study_nonlinear(int(sys.argv[2]), float(sys.argv[3]))
+    elif sys.argv[1] == "rough":
+        study_rough(int(sys.argv[2]), float(sys.argv[3]))
     elif sys.argv[1] == "held-back":
         seeds, accuracy = range(HELD_BACK, HELD_BACK + int(sys.argv[2])), float(sys.argv[3])
         study_random(random_scene, seeds, accuracy, "auto", (1e-3 * accuracy, 1e-3 * accuracy))

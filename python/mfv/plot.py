@@ -455,13 +455,21 @@ def loop(result: Result, ax: Axes | None = None, step: int | None = None) -> Axe
     history = result.history
     shift, force = history.shift, history.tangential_force
     has_events = not np.isin(history.event_kind, (EventKind.START, EventKind.STEP_END, EventKind.STOPPED)).all()
-    ax.plot(shift, force, color=NUMBERS, linewidth=0.8 if has_events else 0.0, **_points(len(shift)), label="computed")
+    _curve(ax, shift, force, color=NUMBERS, linewidth=0.8 if has_events else 0.0, **_points(len(shift)), label="computed")
     if "shift" in result.reference:
         style: dict[str, Any] = {"linestyle": (0, (4, 3))} if has_events else {"linestyle": "none", "marker": "x"}
-        ax.plot(result.reference.shift, force, color=CLOSED_FORM, linewidth=0.9, label="closed form", markersize=4, **style)
+        _curve(ax, result.reference.shift, force, color=CLOSED_FORM, linewidth=0.9, label="closed form", markersize=4, **style)
     across = _label("shift", "U", history.unit("shift"))
     up = _label("tangential force", "Q", history.unit("tangential_force"))
     return _finished_curve(ax, result, step, ("shift", "tangential_force"), (across, up))
+
+
+def _curve(ax: Axes, across: np.ndarray, up: np.ndarray, *, label: str | None = None, **style: Any) -> None:
+    """A curve in pieces: thousands of loops that lie on each other take minutes and gigabytes as one path."""
+    piece = 2000
+    for first in range(0, max(len(across) - 1, 1), piece):
+        part = slice(first, first + piece + 1)
+        ax.plot(across[part], up[part], label=label if first == 0 else None, **style)
 
 
 def nonlinear_loop(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
@@ -471,7 +479,7 @@ def nonlinear_loop(result: Result, ax: Axes | None = None, step: int | None = No
     if "nonlinear_shift" not in history:
         raise ValueError("no non-linear shift to draw: the result has no history, or its shift is constant")
     ax = _axes(ax)
-    ax.plot(history.nonlinear_shift, history.tangential_force, color=NUMBERS, linewidth=0.8)
+    _curve(ax, history.nonlinear_shift, history.tangential_force, color=NUMBERS, linewidth=0.8)
     across = _label("non-linear shift", "U - Q/k", history.unit("nonlinear_shift"))
     up = _label("tangential force", "Q", history.unit("tangential_force"))
     return _finished_curve(ax, result, step, ("nonlinear_shift", "tangential_force"), (across, up), ticks=4)
@@ -493,7 +501,7 @@ def turning(result: Result, ax: Axes | None = None, step: int | None = None) -> 
     ax = _axes(ax)
     history = result.history
     points = _points(history.rotation.size)
-    ax.plot(history.rotation, history.moment, color=NUMBERS, linewidth=0.8, **points, label="computed")
+    _curve(ax, history.rotation, history.moment, color=NUMBERS, linewidth=0.8, **points, label="computed")
     labels = r"rotation $\varphi$ [rad]", _label("moment", "M", history.unit("moment"))
     return _finished_curve(ax, result, step, ("rotation", "moment"), labels)
 
@@ -502,7 +510,7 @@ def rolling(result: Result, ax: Axes | None = None, step: int | None = None) -> 
     """Sliding over the rolled distance, whose slope is the creepage; step ends are numbered, `step` is bold."""
     ax = _axes(ax)
     history = result.history
-    ax.plot(history.rolled, history.slid, color=NUMBERS, linewidth=0.8, **_points(len(history.slid)), label="computed")
+    _curve(ax, history.rolled, history.slid, color=NUMBERS, linewidth=0.8, **_points(len(history.slid)), label="computed")
     across = _label("rolled distance", "s", history.unit("rolled"))
     up = _label("sliding", r"U + h\varphi", history.unit("slid"))
     return _finished_curve(ax, result, step, ("rolled", "slid"), (across, up))
@@ -733,8 +741,9 @@ def _named_records(result: Result, values: np.ndarray, step: int | None) -> dict
     """Records of the history, from 0, and the numbers, from 1, of the saved states at them that a picture names: ends of steps and, of
     cycles, the turning points of the last one; of many the reversals of `values` alone; and `step`."""
     ends: dict[int, list[int]] = {}
-    for record in np.flatnonzero(result.history.event_kind == EventKind.STEP_END):
-        ends.setdefault(int(result.history.step[record]), []).append(int(record))
+    records_of_ends = np.flatnonzero(result.history.event_kind == EventKind.STEP_END)
+    for record, of_step in zip(records_of_ends, result.history.step[records_of_ends]):
+        ends.setdefault(int(of_step), []).append(int(record))
     cycles = {int(number): int(np.sum(result.cycles.step == number)) for number in np.unique(result.cycles.get("step", []))}
     named: dict[int, int] = {}
     for number, state in enumerate(result.steps, start=1):

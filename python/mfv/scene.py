@@ -471,7 +471,7 @@ class Output(KeyGroup):
 
     file: str | os.PathLike[str] | None = None
     history: Literal["events", "steps", "none"] | None = None
-    states: Literal["reversals", "steps", "none", "last_cycle"] | None = None
+    states: Literal["auto", "reversals", "steps", "none", "last_cycle"] | None = None
     error_estimate: bool | None = None
     sensitivity: bool | None = None
     checkpoint_minutes: float | None = None

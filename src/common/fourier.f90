@@ -9,7 +9,7 @@ module mfv_fourier
    implicit none
    private
    public :: fourier_sum, complex_transform, real_transform, back_transform, fast_length, &
-             forward, backward, plans_kept
+             is_fast, forward, backward, plans_kept
 
    include 'fftw3.f03'
 
@@ -170,6 +170,21 @@ contains
          fast_length = min(fast_length, length)
       end do
    end function fast_length
+
+   !> Whether a transform of this length is fast: it is even, and has no prime factors beyond 7.
+   pure logical function is_fast(length)
+      integer, intent(in) :: length
+      integer, parameter :: factors(4) = [2, 3, 5, 7]
+      integer :: i, rest
+
+      rest = length
+      do i = 1, size(factors)
+         do while (rest > 1 .and. modulo(rest, factors(i)) == 0)
+            rest = rest/factors(i)
+         end do
+      end do
+      is_fast = rest == 1 .and. modulo(length, 2) == 0
+   end function is_fast
 
    !> Number of plans in the cache.
    integer function plans_kept()

@@ -29,6 +29,7 @@ module mfv_body_pair
       procedure :: products
       procedure :: displacements
       procedure :: normal_by_shear
+      procedure :: tangential_displacements
       procedure :: deforms
       procedure :: body_displacements
    end type body_pair_type
@@ -186,6 +187,25 @@ contains
          normal = normal + merge(1.0_wp, upper_sign(block_wt), i == lower_body)*by_body
       end do
    end subroutine normal_by_shear
+
+   !> See mfv_compliance. The effect of pressure has the opposite sign on the upper body.
+   subroutine tangential_displacements(self, pressure, shear, tangential)
+      class(body_pair_type), intent(in) :: self
+      real(wp), intent(in) :: pressure(:), shear(:)
+      real(wp), intent(out) :: tangential(:)
+      real(wp) :: by_body(size(shear)), factor
+      integer :: i
+
+      tangential = 0.0_wp
+      do i = 1, 2
+         if (.not. self%deforms(i)) cycle
+         factor = merge(1.0_wp, upper_sign(block_up), i == lower_body)
+         ! The effects of pressure on equal bodies cancel.
+         if (.not. self%has_block(block_up)) factor = 0.0_wp
+         call self%body(i)%compliance%tangential_displacements(factor*pressure, shear, by_body)
+         tangential = tangential + by_body
+      end do
+   end subroutine tangential_displacements
 
    !> Surface displacements of one body, into it and to the right, length, by the tractions on the lower body; zero for a
    !> rigid one. Shapes (nodes).

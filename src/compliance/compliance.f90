@@ -48,6 +48,7 @@ module mfv_compliance
       procedure(products_interface), deferred :: products
       procedure :: displacements
       procedure :: normal_by_shear
+      procedure :: tangential_displacements
       procedure :: signature
       procedure :: choose_blocks
       procedure :: one_way
@@ -106,6 +107,17 @@ contains
       call self%products(0.0_wp*shear, shear, by_block)
       normal = by_block(:, block_wt)
    end subroutine normal_by_shear
+
+   !> The tangential displacements alone, see displacements.
+   subroutine tangential_displacements(self, pressure, shear, tangential)
+      class(compliance_type), intent(in) :: self
+      real(wp), intent(in) :: pressure(:), shear(:)
+      real(wp), intent(out) :: tangential(:)
+      real(wp) :: by_block(size(pressure), 4)
+
+      call self%products(pressure, shear, by_block)
+      tangential = by_block(:, block_ut) + by_block(:, block_up)
+   end subroutine tangential_displacements
 
    !> Constants of the coupling blocks: two bodies with equal signatures do not couple. Zero without coupling; huge by
    !> default, which no other body's signature equals.

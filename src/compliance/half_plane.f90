@@ -45,6 +45,7 @@ module mfv_half_plane
       procedure :: entries
       procedure :: products
       procedure :: normal_by_shear
+      procedure :: tangential_displacements
       procedure :: signature
    end type half_plane_type
 
@@ -91,7 +92,7 @@ contains
 
       self%nodes = nodes
       self%direct = [(normal_displacement(self, 2.0_wp*distance, self%interval), distance=0, nodes - 1)]
-      self%operator = new_toeplitz(self%direct)
+      self%operator = new_toeplitz(self%direct, repeats=abs(nodes*self%interval - self%period) < 0.5_wp*self%interval)
       self%block_values = nodes
    end subroutine resize
 
@@ -211,13 +212,27 @@ contains
       normal = normal + self%mixed_ratio*direct
    end subroutine normal_by_shear
 
+   !> See mfv_compliance.
+   subroutine tangential_displacements(self, pressure, shear, tangential)
+      class(half_plane_type), intent(in) :: self
+      real(wp), intent(in) :: pressure(:), shear(:)
+      real(wp), intent(out) :: tangential(:)
+      real(wp) :: direct(size(shear)), none(size(shear))
+
+      tangential = 0.0_wp
+      if (self%has_block(block_up)) call multiply_steps(self, -self%cross, pressure, tangential)
+      call self%operator%multiply(self%mixed_ratio*pressure, none, self%shear_ratio*shear, direct)
+      if (self%has_block(block_ut)) tangential = tangential + direct
+      if (self%has_block(block_up)) tangential = tangential + none
+   end subroutine tangential_displacements
+
    !> displacement(i) = cross (sum of tractions left of i - sum right of i), less cross 2/period (sum of tractions times their
    !> signed distances from i) on a surface that repeats.
    pure subroutine multiply_steps(self, cross, traction, displacement)
       class(half_plane_type), intent(in) :: self
       real(wp), intent(in) :: cross, traction(:)
       real(wp), intent(out) :: displacement(:)
-      real(wp) :: left, right
+      real(wp) :: left, right, moment, factor
       integer :: i, n
 
       n = size(traction)
@@ -232,8 +247,14 @@ contains
          right = right + traction(i)
       end do
       if (.not. self%period > 0.0_wp) return
-      left = sum([(i*traction(i), i=1, n)])
-      displacement = displacement - 2.0_wp*cross*self%interval/self%period*([(i*right, i=1, n)] - left)
+      moment = 0.0_wp
+      do i = 1, n
+         moment = moment + i*traction(i)
+      end do
+      factor = 2.0_wp*cross*self%interval/self%period
+      do i = 1, n
+         displacement(i) = displacement(i) - factor*(i*right - moment)
+      end do
    end subroutine multiply_steps
 
    !> (r+1) ln|r+1| - (r-1) ln|r-1|, the normal displacement by a box traction, to a relative error near epsilon for every r

@@ -9,7 +9,7 @@
 !> is the inverse transform of [(A^ + C^)/2 - B^] Z + (A^ - C^)/2 Z*, X its real and Y its imaginary part, with the real
 !> numbers A^, C^ (cosine sums) and B^ (sine sum).
 module mfv_toeplitz
-   use mfv_fourier, only: back_transform, backward, complex_transform, fast_length, forward, real_transform
+   use mfv_fourier, only: back_transform, backward, complex_transform, fast_length, forward, is_fast, real_transform
    use mfv_kinds, only: wp
    implicit none
    private
@@ -32,16 +32,21 @@ module mfv_toeplitz
 contains
 
    !> From the entries by distance 0, 1, ..., n-1, shape (n): the even A, the odd B (its sign that of row minus column) and
-   !> the even C; if omitted, B is zero and C equals A.
-   type(toeplitz_type) function new_toeplitz(even, odd, other) result(self)
+   !> the even C; if omitted, B is zero and C equals A. `repeats`: whether distances 1 and n-1, 2 and n-2, ... have the same entries
+   !> (only with A alone), so that the matrix is circulant itself.
+   type(toeplitz_type) function new_toeplitz(even, odd, other, repeats) result(self)
       real(wp), intent(in) :: even(:)
       real(wp), intent(in), optional :: odd(:), other(:)
+      logical, intent(in), optional :: repeats
       complex(wp), allocatable :: work(:), spectrum(:)
       integer :: n
 
       n = size(even)
       self%nodes = n
       self%length = fast_length(2*n - 1)
+      if (present(repeats)) then
+         if (repeats .and. is_fast(n)) self%length = n
+      end if
       allocate (work(self%length), spectrum(self%length))
       work = 0.0_wp
       work(:n) = even

@@ -527,7 +527,7 @@ CASE: dict[tuple[str, str], Row] = {
     ("solver", "linear_tolerance"): part("solver", "cylinder", "1e-12"),
     ("output", "file"): text("output", "cylinder", "'result.h5'", refused={"''": "must not be empty"}),
     ("output", "history"): choice("output", "cylinder", "'events'", "events steps none"),
-    ("output", "states"): choice("output", "cylinder", "'reversals'", "reversals steps none last_cycle"),
+    ("output", "states"): choice("output", "cylinder", "'auto'", "auto reversals steps none last_cycle"),
     ("output", "error_estimate"): logical("output", "cylinder", ".false."),
     ("output", "sensitivity"): logical("output", "cylinder", ".false."),
     ("output", "stress_at"): real("output", "cylinder", "1e-3", "length"),

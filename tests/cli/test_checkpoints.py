@@ -174,8 +174,8 @@ def test_a_run_that_failed_is_not_called_complete(tmp_path):
     [
         ("text", "the text of the case file has changed"),
         ("version", "written by version 0.0.0"),
-        ("numbers", "restart/segment is damaged"),
-        ("missing", "dataset restart/certificate is missing"),
+        ("numbers", "restart/numbers is damaged"),
+        ("missing", "dataset restart/state_pressure is missing"),
         ("file", "case.h5 is not an HDF5 file"),
     ],
 )
@@ -191,9 +191,9 @@ def test_a_checkpoint_that_cannot_be_used_is_refused(tmp_path, damage, why):
             if damage == "version":
                 result.attrs["mfv_version"] = "0.0.0"
             elif damage == "numbers":
-                result["restart/segment"][()] = -1
+                result["restart/numbers"][17] += 1
             else:
-                del result["restart/certificate"]
+                del result["restart/state_pressure"]
     before = (tmp_path / "case.h5").read_bytes()
     code, output, errors = run(tmp_path, "--resume")
     assert code == INPUT and output == ""

@@ -274,7 +274,7 @@ def test_a_page_is_one_file_without_addresses_to_load(tmp_path: Path) -> None:
 
 
 def test_of_many_states_and_cycles_some_are_shown() -> None:
-    result = mfv.run(text=SHEARED.replace("cycles=2", "cycles=130"))
+    result = mfv.run(text=SHEARED.replace("cycles=2", "cycles=130") + "&output states='reversals' /")
     text = report.page(result, "x.h5")
     assert f"{report.MOST_STATES} of {len(result.steps)} states are shown" in text
     assert f"{report.MOST_CYCLES} of 130 cycles" in text

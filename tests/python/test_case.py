@@ -221,6 +221,16 @@ def test_the_interpreter_can_end_while_a_thread_leads_a_case() -> None:
     assert (ended.returncode, ended.stderr) == (0, "")
 
 
+def test_loads_that_a_stopped_step_has_not_reached_are_held(pressed: mfv.Case) -> None:
+    pressed.observe(lambda told: told.tangential_force > 1.0e-4)
+    pressed.advance(tangential_force=2.8e-4)
+    pressed.observe(None)
+    held = pressed.loads.tangential_force
+    assert 1.0e-4 < held < 2.8e-4
+    pressed.advance(normal_force=1.1e-3, check=True)
+    assert pressed.loads.tangential_force == pytest.approx(held, rel=1e-12)
+
+
 def test_an_observer_is_told_of_every_increment() -> None:
     seen: list[mfv.Progress] = []
     case = cylinder(*SHEARED).contact()

@@ -428,6 +428,47 @@ def test_report_of_abaqus(tmp_path: Path) -> None:
     same(from_fe(path, columns=columns), expected())
 
 
+def test_report_of_several_regions(tmp_path: Path) -> None:
+    """Every region has a table in each frame, with the nodes that it shares with others; the same numbers in two parts are refused."""
+    x, _, across, along = frames()
+
+    def table(region: int, nodes: range, factor: float) -> str:
+        names, half = "COORD.COOR1  CSHEARF.CSHEARF1  CNORMF.CNORMF2", ""
+        for n in range(3):
+            one = report(
+                [1.0], names, lambda _, i, n=n: f"{i + 1}  {x[i]:.17g}  {across[n, i] * factor:.17g}  {along[n, i]:.17g}", len(x)
+            )
+            lines = one.splitlines()
+            rows = [line for line in lines if line.split()[:1] in [[f"{i + 1}"] for i in range(len(x)) if i not in nodes]]
+            half += "\f" + "\n".join(line for line in lines if line not in rows).replace("Step-1", f"Step-{n + 1}") + "\n"
+        return half
+
+    columns = {"force_x": "CSHEARF.CSHEARF1", "force_y": "CNORMF.CNORMF2"}
+    path, middle = tmp_path / "job.rpt", len(x) // 2
+    parts = [table(1, range(middle + 1), 1.0).split("\f")[1:], table(2, range(middle, len(x)), 1.0).split("\f")[1:]]
+    path.write_text("".join(left + right for left, right in zip(*parts)))
+    same(from_fe(path, columns=columns), expected())
+    others = table(2, range(middle, len(x)), 1.5).split("\f")[1:]
+    path.write_text("".join(left + right for left, right in zip(parts[0], others)))
+    with pytest.raises(ValueError, match=rf"node {middle + 1} has several values at the time 1 of Step-1: report one part only"):
+        from_fe(path, columns=columns)
+
+
+def test_report_that_cannot_be_read_whole(tmp_path: Path) -> None:
+    """Rows of a narrow page in two lines, and increments that differ by less than the digits of their times."""
+    x, _, across, _ = frames()
+    path = tmp_path / "job.rpt"
+    whole = report([1.0], "COORD.COOR1  CSHEARF.CSHEARF1", lambda n, i: f"{i + 1}  {x[i]:.17g}  {across[n, i]:.17g}", len(x))
+    path.write_text(whole.replace("-" * 65 + "\n", "-" * 65 + "\n  CNORMF.CNORMF2\n  @Loc 1\n" + "-" * 65 + "\n"))
+    with pytest.raises(
+        ValueError, match=r"job.rpt: the rows of its tables are broken into several lines; write it with a wider page"
+    ):
+        from_fe(path)
+    path.write_text(whole + whole.replace("Increment     10", "Increment     11"))
+    with pytest.raises(ValueError, match=r"two frames have the time 1; omit one"):
+        from_fe(path)
+
+
 def test_dat_of_calculix(tmp_path: Path) -> None:
     """Forces of two sets; the positions are those of the deck, by set and by sides of elements."""
     x, times, across, along = frames()

@@ -126,6 +126,27 @@ def test_many_surfaces_against_events(seed: int) -> None:
     check_against_events(2048, seed, "none")
 
 
+@pytest.mark.parametrize("seed", range(2))
+def test_coupled_surfaces_by_large_increments(seed: int) -> None:
+    """Root mean squares of the tractions, dissipation and stick ratios within the accuracy, against events."""
+    points, accuracy = 2048, 1e-2
+    profile = surface(points, seed=seed, cut_off=8 * LENGTH / points)
+    lower, upper = Body.half_plane(youngs_modulus=1.0, poisson_ratio=0.3), Body.profile(profile.x, profile.height, rigid=True)
+    steps = [Step(normal_force=0.15), Step(force_ratio=0.6), Step(force_ratio=-0.6, cycles=1)]
+    scene = Scene(lower, upper, mesh=Mesh(nodes=points, period=LENGTH), friction=Friction.coulomb(0.3), steps=steps)
+    scene.solver = mfv.Solver(accuracy=accuracy)
+    found = mfv.run(scene)
+    scene.solver = mfv.Solver(stepping="event")
+    expected = mfv.run(scene)
+    assert found.summary.leaps > 0 and found.summary.events < 0.3 * expected.summary.events
+    for one, other in zip(found.steps, expected.steps, strict=True):
+        wrong = np.hypot(one.pressure - other.pressure, one.shear - other.shear)
+        tractions = np.hypot(other.pressure, other.shear)
+        assert np.linalg.norm(wrong) < accuracy * np.linalg.norm(tractions)
+        assert one.contact_length == pytest.approx(other.contact_length, rel=accuracy)
+    assert np.asarray(found.cycles.dissipation) == pytest.approx(np.asarray(expected.cycles.dissipation), rel=accuracy)
+
+
 def test_mean_and_bar() -> None:
     mean, bar = surfaces.mean_and_bar([1.0, 2.0, 3.0, 4.0])
     assert mean == 2.5 and bar == pytest.approx(3.182446 * np.sqrt(5.0 / 3.0) / 2.0, rel=1e-6)

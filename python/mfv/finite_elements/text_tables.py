@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -155,23 +156,22 @@ def read_rpt(path: Path, surface: str | None, mesh: Path | None, columns: Column
     Columns Node Label and, for instance, CPRESS, CSHEAR1, CNORMF.CNORMF1, S.S11, COORD.COOR1; without coordinates positions come from the
     input deck `mesh`. With `mesh`, `surface` is a set of it; else it names the file only. Raises OSError, ValueError.
     """
-    frames = _tables_of(path)
+    frames = _frames_of(path)
     if not frames:
         raise ValueError(
             f"{path}: has no table of nodes (Node Label and values); write it by Report, Field Output, at Unique Nodal"
         )
-    names = frames[0][2]
-    if any(frame[2] != names for frame in frames):
-        raise ValueError(f"{path}: its tables have different columns; write the same variables at all frames")
-    times = _total_times([frame[0] for frame in frames], [frame[1] for frame in frames])
-    rows = np.concatenate([frame[3] for frame in frames])
-    time_of_row = np.repeat(times, [len(frame[3]) for frame in frames])
+    times = _total_times([frame.step for frame in frames], [frame.time for frame in frames])
+    if (same := np.flatnonzero(np.diff(times) <= 0.0)).size:
+        raise ValueError(f"{path}: two frames have the time {times[same[0]]:g}; omit one, or give a CSV with more digits of time")
+    rows = np.concatenate([frame.rows for frame in frames])
+    time_of_row = np.repeat(times, [len(frame.rows) for frame in frames])
     if mesh is not None and surface is not None:
         keep = np.isin(rows[:, 0], read_deck(mesh).numbers(surface))
         if not keep.any():
             raise ValueError(f"{path}: has no node of '{surface}' of {mesh}")
         rows, time_of_row = rows[keep], time_of_row[keep]
-    values = {"node": rows[:, 0]} | {_meaning(name): rows[:, at] for at, name in enumerate(names[1:], start=1)}
+    values = {"node": rows[:, 0]} | {_meaning(name): rows[:, at] for at, name in enumerate(frames[0].names[1:], start=1)}
     return _record(path, surface, mesh, columns, time_of_row, values)
 
 
@@ -180,26 +180,66 @@ def _meaning(name: str) -> str:
     return next((axis for axis, names in _PLACES.items() if name.lower() in names), name)
 
 
-def _tables_of(path: Path) -> list[tuple[str, float, list[str], Array]]:
-    """Step, time in it, names of the columns and rows of every table."""
-    found: list[tuple[str, float, list[str], list[list[float]]]] = []
-    step, time, above, is_table = "", 0.0, ["", ""], False
+class _Table(NamedTuple):
+    """A table of a report: step, line of its frame, time in the step, names of the columns, a row for every node."""
+
+    step: str
+    frame: str
+    time: float
+    names: list[str]
+    rows: Array
+
+
+def _frames_of(path: Path) -> list[_Table]:
+    """One table for every frame, of all its parts and regions. Raises ValueError."""
+    frames: list[_Table] = []
+    for table in _tables_of(path):
+        if table.names != (frames or [table])[0].names:
+            raise ValueError(f"{path}: its tables have different columns; write the same variables at all frames")
+        if frames and frames[-1][:2] == table[:2]:
+            table = table._replace(rows=np.concatenate([frames.pop().rows, table.rows]))
+        frames.append(table)
+    return [frame._replace(rows=_by_node(path, frame)) for frame in frames]
+
+
+def _by_node(path: Path, frame: _Table) -> Array:
+    """A row for every node, in their order. A node that several regions share is in the table of each. Raises ValueError."""
+    rows: Array = frame.rows[np.argsort(frame.rows[:, 0], kind="stable")]
+    first = np.concatenate([[True], np.diff(rows[:, 0]) > 0.0])
+    differs = ~np.isclose(rows, rows[first][np.cumsum(first) - 1]).all(axis=1)
+    if differs.any():
+        raise ValueError(
+            f"{path}: node {rows[differs][0, 0]:.0f} has several values at the time {frame.time:g} of {frame.step}: report one part only, "
+            "averaged over all regions"
+        )
+    once: Array = rows[first]
+    return once
+
+
+def _tables_of(path: Path) -> list[_Table]:
+    """The tables of a report as they stand there. Raises ValueError."""
+    found: list[_Table] = []
+    rows: list[list[list[float]]] = []
+    step, frame, time, above, is_table = "", "", 0.0, ["", ""], False
     with path.open(encoding="latin-1") as file:
         for line in file:
             words = line.split()
             if match := _STEP.match(line):
                 step = match[1]
             elif match := _TIME.search(line):
-                time = float(match[1])
+                frame, time = line.strip(), float(match[1])
             elif _RULE.match(line) and "label" in above[1].lower():
-                found.append((step, time, _names(above[0], 1 + above[1].count("@")), []))
+                found.append(_Table(step, frame, time, _names(above[0], 1 + above[1].count("@")), np.empty(0)))
+                rows.append([])
                 is_table = True
-            elif is_table and words and words[0].isdigit() and len(words) == len(found[-1][2]):
-                found[-1][3].append([float(word) for word in words])
+            elif _RULE.match(line) and is_table:
+                raise ValueError(f"{path}: the rows of its tables are broken into several lines; write it with a wider page")
+            elif is_table and words and words[0].isdigit() and len(words) == len(found[-1].names):
+                rows[-1].append([float(word) for word in words])
             elif words:
-                is_table = is_table and not found[-1][3]
+                is_table = is_table and not rows[-1]
             above = [above[1], line] if words else above
-    return [(step, time, names, np.array(rows)) for step, time, names, rows in found if rows]
+    return [table._replace(rows=np.array(values)) for table, values in zip(found, rows) if values]
 
 
 def _names(line: str, columns: int) -> list[str]:

@@ -13,7 +13,7 @@ module mfv_closed_form
    use mfv_reference_wave, only: new_wave_contact, wave_type
    use mfv_scene, only: scene_type
    use mfv_scene_indenter, only: indenter_of
-   use mfv_simulation, only: simulation_type, states_reversals, states_steps
+   use mfv_simulation, only: simulation_type, states_auto, states_reversals, states_steps
    use mfv_tolerances, only: significant
    implicit none
    private
@@ -214,7 +214,7 @@ contains
          is_mindlin = .not. form%indenter%is_flat() .and. model%scene%friction%is_coulomb() .and. model%tangential .and. &
                       summary%pressed_then_sheared .and. summary%sheared .and. &
                       .not. (summary%friction_in_press .and. model%couples(block_up)) .and. &
-                      (simulation%keep_states == states_reversals .or. &
+                      (any(simulation%keep_states == [states_auto, states_reversals]) .or. &
                        simulation%keep_states == states_steps .and. .not. summary%cycled)
       end associate
    end function is_mindlin

@@ -11,7 +11,7 @@ module mfv_discretisation_error
    use mfv_error_bar
    use mfv_friction, only: friction_coefficient_type
    use mfv_kinds, only: pi, wp
-   use mfv_load_extremes, only: candidate_tension, load_extremes_type
+   use mfv_load_extremes, only: candidate_tension, extreme_type, load_extremes_type
    use mfv_motions, only: bulk_motions, control_keep, motion_approach, motion_shift
    use mfv_near_field, only: near_field_type
    use mfv_node_status, only: holds, in_contact
@@ -43,6 +43,8 @@ module mfv_discretisation_error
    !> Least uncertainty of tensions on equal intervals, relative, over (interval/half-width)^2, for coarser meshes that agree better
    !> because their edges happen to lie alike in an interval: measured (docs/verification.md, the trailing edge).
    real(wp), parameter :: of_tensions = 0.03_wp
+   !> The same of worn surfaces, over interval/half-width: the worn part ends somewhere in an interval.
+   real(wp), parameter :: of_worn_tensions = 0.5_wp
 
 contains
 
@@ -100,13 +102,13 @@ contains
             if (peak_is_at_corner(simulation, place, values(:, 1))) estimate%bar(place) = logarithmic_bar(values(place, :))
          end do
          call drop_uncertain_places(values, estimate%bar)
-         if (simulation%contact%model%tangential) call add_rivals(simulation, observed%extremes, estimate%bar)
+         call add_rivals(simulation, observed%extremes, estimate%bar)
       end if
       simulation%estimate = estimate
    end subroutine estimate_error
 
-   !> The largest tension may be at another place where one is as large within their bars, as at both edges of a contact: its
-   !> distance is added to the bars of places. `extremes`: see find_extremes; `bars`: shape (observable_count).
+   !> The largest tension or pressure may be at another place where one is as large within their bars, as at both edges of a
+   !> contact: its distance is added to the bars of places. `extremes`: see find_extremes; `bars`: shape (observable_count).
    subroutine add_rivals(simulation, extremes, bars)
       type(simulation_type), intent(in) :: simulation
       type(load_extremes_type), intent(in) :: extremes
@@ -116,15 +118,21 @@ contains
       logical :: available
       integer :: side
 
+      call add('largest_pressure', rivals_of(extremes%pressure))
+      if (.not. simulation%contact%model%tangential) return
       do side = 1, size(body)
-         associate (found => extremes%searched(candidate_tension(side)))
-            call add('largest_'//body(side)//'_tension', largest_type(found%value, found%x, found%y, found%rival, found%rival_x))
-         end associate
+         call add('largest_'//body(side)//'_tension', rivals_of(extremes%searched(candidate_tension(side))))
          call find_largest_tension(simulation%contact%model, simulation%contact%state, side == 2, largest, available)
          if (available) call add(body(side)//'_tension', largest)
       end do
 
    contains
+
+      pure type(largest_type) function rivals_of(found)
+         type(extreme_type), intent(in) :: found
+
+         rivals_of = largest_type(found%value, found%x, found%y, found%rival, found%rival_x)
+      end function rivals_of
 
       subroutine add(name, largest)
          character(*), intent(in) :: name
@@ -531,9 +539,13 @@ contains
          if (.not. allocated(model%scene%mesh%ends)) then
             fineness = contact_interval(model, simulation%contact%state)/ &
                        max(0.5_wp*values(observable_place('contact_length')), model%interval())
+            fineness = of_tensions*fineness**2 + merge(of_worn_tensions*fineness, 0.0_wp, model%scene%wear%acts())
             where (observables%error == error_local .and. index(observables%name, '_tension') > 0) &
-               allowances = allowances + of_tensions*fineness**2*abs(values)
+               allowances = allowances + fineness*abs(values)
          end if
+         ! What slips within the outermost intervals while friction acts against coupling stays in the shift.
+         if (pressing_shears(model) .and. stick_zones_can_grow(model)) &
+            where (observables%name == 'shift') allowances = allowances + maxval(hidden_slip())
          call add_coarse_slip(simulation%slip, 'dissipation', 1.0_wp)
          if (.not. ieee_is_nan(values(observable_place('largest_slip_range')))) &
             call add_hidden('largest_slip_range', maxval(hidden_slip()))
@@ -771,15 +783,17 @@ contains
       !> In intervals; narrow of stick zones of few nodes between opposite slip; grown_to_end where fewer than two nodes slip beside
       !> the stick zone; worn where the outermost node is, since the pressure vanishes otherwise there; cornered over the number of
       !> nodes of the patch: around a corner in contact the pressure has an error of the first order, which moves the edges in
-      !> second order.
+      !> second order; layered times the squared interval over the thickness of a layer, within which the pressure vanishes as a
+      !> root, up to layered_at_most; stuck of stick zones where the pressure depends on the shear.
       real(wp), parameter :: coupled = 0.02_wp, receded = 0.5_wp, worn = 0.5_wp, grown = 0.2_wp, grown_to_end = 0.25_wp, &
-                             cornered = 0.2_wp, narrow = 0.5_wp
+                             cornered = 0.2_wp, narrow = 0.5_wp, layered = 0.2_wp, layered_at_most = 0.5_wp, stuck = 0.08_wp
       integer, parameter :: fewest_alike = 4
       logical :: can_grow, depends_on_friction
       type(corner_type), allocatable :: corners(:)
-      real(wp) :: least
+      real(wp) :: least, thickness
       integer :: i, j
 
+      thickness = thinnest_layer(model%scene)
       can_grow = stick_zones_can_grow(model)
       corners = corners_of(model, state)
       depends_on_friction = model%compliance%elastic_block(block_wt) .and. pressing_shears(model)
@@ -791,8 +805,9 @@ contains
             if (depends_on_friction .and. .not. patch%right_ends) &
                patch%right_error = max(patch%right_error, width(patch%last)*merge(receded, coupled, has_receded .and. &
                                                                                 slipping_run(state, patch%last, -1) < fewest_alike))
-            least = 0.0_wp
-            if (any(corners%place > patch%left .and. corners%place < patch%right)) least = cornered/(patch%last - patch%first + 1)
+            least = min(layered*(maxval(width([patch%first, patch%last]))/thickness)**2, layered_at_most)
+            if (any(corners%place > patch%left .and. corners%place < patch%right)) &
+               least = max(least, cornered/(patch%last - patch%first + 1))
             if (.not. patch%left_ends) patch%left_error = max(patch%left_error, width(patch%first)* &
                                                               max(least, merge(worn, 0.0_wp, is_worn(patch%first))))
             if (.not. patch%right_ends) patch%right_error = max(patch%right_error, width(patch%last)* &
@@ -802,6 +817,10 @@ contains
                   if (is_narrow_stick_zone(state%status, zone)) then
                      zone%left_error = max(zone%left_error, width(zone%first)*narrow)
                      zone%right_error = max(zone%right_error, width(zone%last)*narrow)
+                  end if
+                  if (depends_on_friction) then
+                     zone%left_error = max(zone%left_error, width(zone%first)*stuck)
+                     zone%right_error = max(zone%right_error, width(zone%last)*stuck)
                   end if
                   if (.not. can_grow) cycle
                   zone%left_error = max(zone%left_error, width(zone%first)*merge(grown_to_end, grown, &
@@ -821,6 +840,15 @@ contains
          if (model%scene%wear%acts()) is_worn = state%worn(node) > 0.0_wp
       end function is_worn
    end subroutine widen_uncertainties
+
+   !> Thickness of the thinner one of the first layers of both bodies, length; huge without layers.
+   pure real(wp) function thinnest_layer(scene) result(thickness)
+      type(scene_type), intent(in) :: scene
+
+      thickness = huge(thickness)
+      if (scene%has_layers(.false.)) thickness = scene%lower%elasticity%depth_of(1)
+      if (scene%has_layers(.true.)) thickness = min(thickness, scene%upper%elasticity%depth_of(1))
+   end function thinnest_layer
 
    !> Whether the contact was wider than in a state by an interval or more, or the surfaces are stretched: shear tractions at the
    !> edges are then not those of one slip zone.

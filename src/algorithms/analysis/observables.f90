@@ -6,7 +6,9 @@ module mfv_observables
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
    use mfv_edge_fields, only: edge_field_type, edge_quantities
+   use mfv_extreme_states, only: find_extremes
    use mfv_kinds, only: pi, wp
+   use mfv_load_cycles, only: present_edge_fields
    use mfv_load_extremes, only: candidate_tension, candidate_von_mises, extreme_type, load_extremes_type
    use mfv_motions, only: motions, motion_count => user_motions, motion_approach, motion_shift
    use mfv_near_field, only: near_field_type
@@ -244,7 +246,7 @@ contains
       type(simulation_type), intent(in) :: simulation
 
       observed%values = ieee_value(1.0_wp, ieee_quiet_nan)
-      call simulation%find_extremes(observed%extremes)
+      call find_extremes(simulation, observed%extremes)
       call add_present(simulation, observed%extremes, observed%edges, observed%values)
       call add_extremes(observed%extremes, observed%values)
       call add_cycles(simulation, observed%values)
@@ -302,7 +304,7 @@ contains
          end do
          call put(values, 'peak_shear', shear)
          call put(values, 'half_width_number', edges%half_width()*model%scene%curvature())
-         fields = simulation%edge_fields(patches)
+         fields = present_edge_fields(simulation, patches)
          call add_edge_fields(fields, values)
          call add_tension(simulation, extremes, .false., 'lower', values)
          call add_tension(simulation, extremes, .true., 'upper', values)

@@ -3,6 +3,7 @@ module mfv_validity
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_body, only: body_type
    use mfv_cycle, only: cycle_type
+   use mfv_extreme_states, only: find_largest_of_history
    use mfv_kinds, only: pi, wp
    use mfv_load_extremes, only: load_extremes_type
    use mfv_motions, only: motion_approach, motion_shift, motion_rotation, control_displacement
@@ -308,7 +309,7 @@ contains
       integer :: mark
 
       if (.not. body%has_strength()) return
-      call simulation%find_largest_of_history(upper, extremes, largest, mark)
+      call find_largest_of_history(simulation, upper, extremes, largest, mark)
       if (mark == 0) return
       if (.not. ieee_is_finite(largest%value)) then
          call add_text(warnings, 'the '//merge('upper', 'lower', upper)//' body yields under any load: its stresses are '// &

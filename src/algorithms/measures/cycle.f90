@@ -29,7 +29,7 @@ module mfv_cycle
       real(wp) :: stiffness_on_leaving = 0.0_wp
       !> See contact_model_type.
       real(wp) :: largest_stiffness = 0.0_wp
-      !> Work of the forces so far, and its estimated error over the accuracy, see path_position_type.
+      !> Work of the forces so far, and its estimated error over the accuracy, see path_record_type.
       real(wp) :: work(motion_count) = 0.0_wp, work_error = 0.0_wp
    contains
       procedure :: distance

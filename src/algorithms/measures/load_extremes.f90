@@ -38,14 +38,15 @@ module mfv_load_extremes
    !> Extremes that differ by less, relative to their values, are equal: the first row counts.
    real(wp), parameter :: round_off = significant
 
-   !> A value, its place (x and y, lengths) and its row, see load_extremes_type; 0: none yet. Of a tension also the largest one at
-   !> another place, farther than an interval, of any row.
+   !> A value, its place (x and y, lengths) and its row, see load_extremes_type; 0: none yet. Of a tension or pressure also the
+   !> largest one at another place, farther than an interval, of any row.
    type :: extreme_type
       real(wp) :: value = 0.0_wp, x = 0.0_wp, y = 0.0_wp
       integer :: row = 0
       real(wp) :: rival = -huge(1.0_wp), rival_x = 0.0_wp
    contains
       procedure :: raise
+      procedure :: raise_with_rival
       procedure :: compete
    end type extreme_type
 
@@ -110,6 +111,20 @@ contains
       if (present(y)) self%y = y
    end subroutine raise
 
+   !> Take a larger value, as above; the smaller one may be the rival, see compete.
+   pure subroutine raise_with_rival(self, value, row, interval, x, y)
+      class(extreme_type), intent(inout) :: self
+      real(wp), intent(in) :: value, interval, x
+      integer, intent(in) :: row
+      real(wp), intent(in), optional :: y
+      type(extreme_type) :: before
+
+      before = self
+      call self%raise(value, row, x, y)
+      if (before%row > 0) call self%compete(before%value, before%x, interval)
+      call self%compete(value, x, interval)
+   end subroutine raise_with_rival
+
    !> Keep the largest of a value and the present rival as the rival, if farther than `interval` from the place of the extreme.
    pure subroutine compete(self, value, x, interval)
       class(extreme_type), intent(inout) :: self
@@ -151,7 +166,8 @@ contains
       call find_patches(model, state, patches)
       edges = outermost_edges(patches)
       self%at_end = self%at_end .or. rises_at_end(model, state, patches)
-   if (edges%contact) call self%pressure%raise(maxval(state%fields%pressure), row, place_of_largest(model%x, state%fields%pressure))
+      if (edges%contact) call self%pressure%raise_with_rival(maxval(state%fields%pressure), row, model%interval(), &
+                                                             place_of_largest(model%x, state%fields%pressure))
       if (model%tangential) then
          do i = 1, size(patches)
             shear = largest_shear(model, state, patches(i), arc)
@@ -362,6 +378,7 @@ contains
       !> Of a fit, whose stress is largest anywhere around the circle, more.
       integer, parameter :: between = 12, around = 60
       logical :: is_sample(model%nodes())
+      logical, allocatable :: inside(:)
       integer, allocatable :: nodes(:)
       complex(wp), allocatable :: integrals(:)
       integer :: most_between, i, j
@@ -384,6 +401,11 @@ contains
       integrals = cauchy_integrals(model, state, patches, nodes)
       samples%of_shear = aimag(integrals)
       samples%of_pressure = real(integrals, wp)
+      if (.not. any(patches%to_first > 0.0_wp)) return
+      ! A patch that continues in the first one has no edge where the surfaces repeat.
+      inside = .not. model%scene%repeats_beyond(samples%arc)
+      samples = surface_samples_type(pack(samples%arc, inside), pack(samples%pressure, inside), pack(samples%shear, inside), &
+                                     pack(samples%of_pressure, inside), pack(samples%of_shear, inside))
    end subroutine sample_surface
 
    !> 1/pi integrals of p + i tau over t - x dt at `nodes` and at the left and the right edges of all patches, force/length^2. The

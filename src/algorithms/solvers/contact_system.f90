@@ -8,7 +8,8 @@ module mfv_contact_system
    use mfv_motions, only: motions, motion_count, control_force, control_displacement
    implicit none
    private
-   public :: contact_system_type, load_type, response_type, constraints_type, prescribed_type, find_prescribed, initial_loads
+   public :: contact_system_type, solver_work_type, load_type, response_type, constraints_type, prescribed_type, find_prescribed, &
+             initial_loads
    public :: rates_of_loads, rates_at_end, rates_of_fronts, rates_of_derivatives, kinds_of_rates
 
    !> Kinds of rates: of the loads, of the loads at states of large increments, and with the slip of fronts to the left and right;
@@ -65,13 +66,15 @@ module mfv_contact_system
       type(contact_fields_type) :: state, rate
    end type response_type
 
-   type, abstract :: contact_system_type
+   !> Work so far: linear solves; iterations, and products with the compliance (iterative solvers).
+   type :: solver_work_type
+      integer :: solves = 0
+      integer(int64) :: iterations = 0, products = 0
+   end type solver_work_type
+
+   type, abstract, extends(solver_work_type) :: contact_system_type
       !> Value of &solver linear_solver.
       character(len=7) :: name = 'dgesv'
-      !> Linear solves so far.
-      integer :: solves = 0
-      !> Numbers of iterations, and of products with the compliance, so far (iterative solvers).
-      integer(int64) :: iterations = 0, products = 0
       !> Tolerance of tractions, motions and their rates of the last solve, relative to the largest; 0: round-off.
       !> `rate_tolerance`: the same of the rates that may be less accurate.
       real(wp) :: tolerance = 0.0_wp, rate_tolerance = 0.0_wp

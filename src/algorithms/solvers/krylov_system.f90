@@ -606,8 +606,9 @@ contains
          self%pressure = 0.0_wp
          self%pressure(self%contact) = rows(:m)
          self%shear = self%slope*self%pressure
-         call displace(self, model)
-         rows(m + 1:) = rows(m + 1:) - self%tangential(self%held) &
+         call model%compliance%tangential_displacements(self%pressure, self%shear, self%tangential)
+         self%products = self%products + 1
+         rows(m + 1:) = rows(m + 1:) - self%stress/self%length*self%tangential(self%held) &
                         + self%softness*self%held_slope*self%pressure(self%held)
       end if
       call self%preconditioner%apply_held(rows(m + 1:))

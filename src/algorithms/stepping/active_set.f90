@@ -82,6 +82,7 @@ contains
          path%system%allowed = allowed
          if (.not. possible) return
          call find_wanted(path, segment, fields, wanted, held)
+         if (.not. present(held)) call slip_on_return(path, fields, any(in_contact(tried(:, :solve)), dim=2), wanted)
          found = all(wanted == path%state%status)
          is_consistent = found
          accurate = .not. rough .or. path%system%tolerance <= max(round_off, allowed)
@@ -132,6 +133,18 @@ contains
       end do
       found = .false.
    end subroutine find_statuses
+
+   !> Nodes that close again slip: stuck they pulled, since their slip is far from that at which they would hold, and shear causes
+   !> normal displacements. `closed`: nodes that were in contact before, shape (nodes).
+   pure subroutine slip_on_return(path, fields, closed, wanted)
+      class(contact_path_type), intent(in) :: path
+      type(contact_fields_type), intent(in) :: fields
+      logical, intent(in) :: closed(:)
+      integer, intent(inout) :: wanted(:)
+
+      where (wanted == node_stick .and. closed .and. .not. in_contact(path%state%status)) &
+         wanted = merge(node_slip_right, node_slip_left, fields%slip() > path%state%stuck_slip)
+   end subroutine slip_on_return
 
    !> Keep the statuses of a state, its `fields` and the slip at which its nodes hold.
    subroutine keep(path, fields, kept)

@@ -16,7 +16,7 @@ module mfv_chain
    use mfv_node_status
    implicit none
    private
-   public :: chain_type, make_chain, add_samples, find_rates_after, error_at_start
+   public :: chain_type, make_chain, add_samples, find_rates_after, is_rough, error_at_start
 
    !> Where contact begins, event stepping resolves the touching of single nodes. The shear tractions next to that point, or next to
    !> the edge of a contact without slip zones, differ by up to this, relative to the largest traction, over the number of nodes in
@@ -45,6 +45,8 @@ module mfv_chain
       logical :: found = .false., exceeded = .false.
       !> Whether contact begins in the interval, and whether the nodes that hold from its start are known.
       logical :: begins = .false., fronts = .false.
+      !> Whether these are not, since the contact has many patches of few nodes (is_rough).
+      logical :: rough = .false.
       !> Nodes that hold from the start of the last increment, if known, shape (nodes); whether others stick at the end of any.
       logical, allocatable :: held(:)
       logical :: sticks_anew = .false.
@@ -114,9 +116,20 @@ contains
       chain%solves = chain%solves + path%system%solves
       if (allocated(held)) call move_alloc(held, chain%held)
       chain%work = chain%node_wise
-      if (chain%found) call find_start_error(path, present_state%status, interval, chain)
+      if (chain%found) chain%rough = .not. chain%fronts .and. is_rough(path%state%status)
+      if (chain%found .and. .not. chain%rough) call find_start_error(path, present_state%status, interval, chain)
       path%state = present_state
    end subroutine make_chain
+
+   !> Whether a contact has many patches of few nodes, whose fronts are not resolved. `status`: shape (nodes).
+   pure logical function is_rough(status)
+      integer, intent(in) :: status(:)
+      integer, parameter :: many = 8, few = 64
+      integer :: patches
+
+      patches = count(in_contact(status) .and. .not. eoshift(in_contact(status), -1, .false.))
+      is_rough = patches >= many .and. count(in_contact(status)) < few*patches
+   end function is_rough
 
    !> Nodes that hold from the start of increment `i`, shape (nodes).
    pure function holding_before(chain, start, i) result(held)

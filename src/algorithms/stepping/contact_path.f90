@@ -29,8 +29,8 @@ module mfv_contact_path
    use mfv_tolerances, only: certified, rounding, significant, visible
    implicit none
    private
-   public :: contact_path_type, path_position_type, saved_path_type, new_contact_path, segment_type, iteration_type, note_change, &
-             first_true
+   public :: contact_path_type, path_record_type, path_position_type, saved_path_type, new_contact_path, segment_type, &
+             iteration_type, note_change, first_true
 
    !> A load segment: a linear change of the controlled loads.
    type :: segment_type
@@ -53,9 +53,8 @@ module mfv_contact_path
       logical :: pending = .false.
    end type leaving_type
 
-   !> Restart state of a contact, except for the linear solver and the history records.
-   type :: path_position_type
-      type(contact_state_type) :: state
+   !> What a contact carries along besides its state, of a fixed size: restart files have it whole.
+   type :: path_record_type
       type(certificate_type) :: certificate
       !> Events so far: loads at which statuses changed.
       integer :: events = 0
@@ -71,6 +70,11 @@ module mfv_contact_path
       real(wp) :: work(motion_count) = 0.0_wp
       !> Estimated error of these works by large increments over the accuracy, force: the dissipation that it would be accurate for.
       real(wp) :: work_error = 0.0_wp
+   end type path_record_type
+
+   !> The position of a contact on its path: all but the model, the linear solver and the history records.
+   type, extends(path_record_type) :: path_position_type
+      type(contact_state_type) :: state
       !> Derivatives with respect to the parameters of the path; not allocated if there are none.
       type(derivatives_type), allocatable :: derivatives
    end type path_position_type
@@ -93,7 +97,6 @@ module mfv_contact_path
       procedure :: differentiate
       procedure :: save_to
       procedure :: restore
-      procedure :: resume
       procedure :: notify
       procedure :: note_start
       procedure :: note_stiffness
@@ -129,11 +132,12 @@ module mfv_contact_path
       procedure :: close_nearest
    end type contact_path_type
 
-   !> A saved position, with the sizes of the history and the mesh and the modelled problem at that time.
+   !> A saved position, with the sizes of the history and the mesh and the modelled problem at that time. The linear solver may be
+   !> omitted: it then goes on without what it has stored.
    type :: saved_path_type
-      private
       type(path_position_type) :: position
       class(contact_system_type), allocatable :: system
+      type(solver_work_type) :: work
       type(recent_intervals_type) :: recent
       integer :: records = 0, added = 0
       logical :: tangential = .false., moves(motion_count) = .false.
@@ -211,16 +215,21 @@ contains
       copy%record_events = .false.
    end subroutine copy_without_history
 
-   !> Save the state of the contact between two segments.
-   subroutine save_to(self, saved)
+   !> Save the state of the contact between two segments. `with_solver`: also what the linear solver and large increments can use
+   !> again.
+   subroutine save_to(self, saved, with_solver)
       class(contact_path_type), intent(in) :: self
       type(saved_path_type), intent(inout) :: saved
+      logical, intent(in) :: with_solver
 
       saved%position = self%path_position_type
       ! Explicit deallocation: gfortran 12 leaks a polymorphic component on assignment.
       if (allocated(saved%system)) deallocate (saved%system)
-      allocate (saved%system, source=self%system)
-      saved%recent = self%recent
+      if (with_solver) then
+         allocate (saved%system, source=self%system)
+         saved%recent = self%recent
+      end if
+      saved%work = self%system%solver_work_type
       saved%records = self%history%records
       saved%added = self%model%added
       saved%tangential = self%model%tangential
@@ -240,25 +249,14 @@ contains
       if (allocated(self%derivatives)) then
          if (.not. self%derivatives%are_of(self%parameters)) deallocate (self%derivatives)
       end if
-      deallocate (self%system)
-      allocate (self%system, source=saved%system)
+      if (allocated(saved%system)) then
+         deallocate (self%system)
+         allocate (self%system, source=saved%system)
+      end if
+      self%system%solver_work_type = saved%work
       self%recent = saved%recent
       self%history%records = min(saved%records, self%history%records)
    end subroutine restore
-
-   !> Continue from a position of a contact of the same scene, on a mesh with `added` more nodes at either end. The linear solver
-   !> starts without history.
-   subroutine resume(self, position, added)
-      class(contact_path_type), intent(inout) :: self
-      type(path_position_type), intent(in) :: position
-      integer, intent(in) :: added
-
-      ! In parentheses: copies, since the model may be replaced.
-      call adapt_model(self%model, added, (self%model%tangential), (self%model%moves))
-      self%path_position_type = position
-      call self%model%set_worn(self%state%worn)
-      call self%certificate%find_applicable(self%model)
-   end subroutine resume
 
    !> Notify the observer, if present, of the load at the fraction `done` of a segment. Error MFV_INTERRUPTED: it requests a stop.
    subroutine notify(self, segment, done, observer, error)
@@ -300,7 +298,8 @@ contains
       real(wp), intent(in) :: force, shift
 
       if (.not. self%leaving%pending) return
-      if (.not. abs(force) > visible*self%model%friction_scale*self%state%fields%force(motion_approach)) return
+      if (.not. abs(force) > self%model%friction_scale*max(visible*self%state%fields%force(motion_approach), &
+                                                           certified*self%certificate%force_scale(motion_approach))) return
       self%leaving%pending = .false.
       if (abs(force) < self%model%largest_stiffness()*abs(shift)) self%leaving%stiffness = force/shift
    end subroutine note_stiffness

@@ -169,6 +169,9 @@ contains
          call accept_chain(path, interval, progress, chain)
          call advance(progress)
          call finish_large_increment(path, segment, progress%done, observer, error)
+      else if (chain%rough) then
+         progress%length = progress%longest
+         progress%by_violations = .true.
       else if (is_coupled(path) .and. .not. any(in_contact(path%state%status))) then
          call begin_by_violations(path, segment, progress)
       else if (chain%found .and. .not. is_worth_it(progress, chain)) then
@@ -308,10 +311,14 @@ contains
       type(sample_type) :: start
       type(chain_type) :: finer
       integer :: increments
+      logical :: rough
 
       call allow_errors(path, progress)
-      if (may_depend_on_path(path, interval)) call find_start(path, interval, start)
+      rough = is_rough(path%state%status)
+      if (may_depend_on_path(path, interval) .and. (path%leaving%pending .or. .not. rough)) call find_start(path, interval, start)
       call find_stiffness(path, interval, start)
+      ! Fronts of patches of few nodes are not resolved.
+      if (rough .and. allocated(start%status)) deallocate (start%status)
       accepted = is_exact(path, interval)
       increments = 1
       associate (nodes => max(path%state%contact_nodes(), 1))
@@ -473,7 +480,8 @@ contains
       path%state = start
    end subroutine finish_chain
 
-   !> Whether a chain meets the tolerance; if not, the number of increments of the next one, 0: too many.
+   !> Whether a chain meets the tolerance; if not, the number of increments of the next one, 0: too many. (In rough contacts errors
+   !> fall irregularly: twice as many.)
    subroutine choose(path, progress, chain, accepted, increments)
       class(contact_path_type), intent(in) :: path
       type(leap_progress_type), intent(in) :: progress
@@ -488,11 +496,11 @@ contains
       increments = 0
       if (accepted) return
       wanted = min(max(2.0_wp, merge(1.0_wp, by_tractions, chain%fronts), by_work**merge(0.25_wp, 0.5_wp, chain%begins)), &
-                   real(most_increments, wp))
+                   merge(2.0_wp, real(most_increments, wp), chain%rough))
       increments = chain%increments*2**ceiling(log(wanted)/log(2.0_wp) - 1.0e-6_wp)
-      if ((has_begun(progress) .and. by_tractions > 1.0_wp .and. increments > most_growing) .or. &
+      if ((has_begun(progress) .and. by_tractions > 1.0_wp .and. increments > most_growing .and. .not. chain%rough) .or. &
           (chain%begins .and. by_tractions > most_increments/chain%increments)) increments = 0
-      if (increments > most_increments .or. &
+      if ((increments > most_increments .and. .not. chain%rough) .or. &
           (real(chain%solves, wp)*increments)/chain%increments > solves_per_change*chain%changes) increments = 0
    end subroutine choose
 
@@ -533,7 +541,8 @@ contains
    !> The work that the error of the dissipation of a chain is compared with, force: the dissipation. If contact begins, that is
    !> often next to nothing: then at least that of a cycle of shear to about 0.8 mu P, as a fraction of (mu P)^2/m, m the contact
    !> modulus. In later parts of a segment in which it has begun, at least a `part` of the dissipation at the goal, if it grows with
-   !> the square of the load as that of a parabola, but no more than that of such a cycle.
+   !> the square of the load as that of a parabola, but no more than that of such a cycle; in rough contacts at least a `part` of
+   !> that of such cycles of all patches, as if each was alone.
    pure real(wp) function reference_work(path, progress, chain) result(work)
       class(contact_path_type), intent(in) :: path
       type(leap_progress_type), intent(in) :: progress
@@ -549,8 +558,26 @@ contains
          share = (progress%done + progress%length)/progress%goal
          work = max(work, part*min(cycle_work*progress%sliding_limit**2, &
                                    (path%state%dissipation - progress%dissipation + chain%work)/share**2))
+         if (chain%rough) work = max(work, part*cycle_work*sum_of_squares(path, chain%after(chain%increments)%pressure))
       end if
    end function reference_work
+
+   !> The sum of the squares of the friction limits of all patches under the given pressures, shape (nodes); force^2.
+   pure real(wp) function sum_of_squares(path, pressure) result(total)
+      class(contact_path_type), intent(in) :: path
+      real(wp), intent(in) :: pressure(:)
+      real(wp) :: limit
+      integer :: i
+
+      total = 0.0_wp
+      limit = 0.0_wp
+      do i = 1, size(pressure)
+         limit = limit + path%model%width(i)*path%model%static_friction(i)*pressure(i)
+         if (pressure(i) > 0.0_wp .and. i < size(pressure)) cycle
+         total = total + limit**2
+         limit = 0.0_wp
+      end do
+   end function sum_of_squares
 
    !> The start of an interval with the statuses as the loads begin to change, and their rates if there is contact. Without statuses
    !> if these are not found.
@@ -656,7 +683,8 @@ contains
    end subroutine find_moving
 
    !> Errors of the finer of two chains of an interval: tractions at the order at which they converge, at most the first, and the
-   !> square root if that is not known; dissipation by mfv_chain_dissipation.
+   !> square root if that is not known; dissipation by mfv_chain_dissipation. In rough contacts, where single nodes of small patches
+   !> may close in another order, that of tractions is a root mean square, times the ratio of the largest traction to theirs.
    subroutine compare(path, interval, coarser, finer)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
@@ -669,6 +697,8 @@ contains
       ratio = real(finer%increments, wp)/real(coarser%increments, wp)
       associate (a => coarser%after(coarser%increments), b => finer%after(finer%increments))
          finer%difference = max(maxval(abs(a%pressure - b%pressure)), maxval(abs(a%shear - b%shear)))
+         if (finer%rough) finer%difference = finer%traction*norm2([a%pressure - b%pressure, a%shear - b%shear]) &
+                                             /norm2([b%pressure, b%shear])
       end associate
       order = least_order
       if (coarser%difference > finer%difference) order = merge(log(coarser%difference/finer%difference)/log(ratio), most_order, &
@@ -695,7 +725,14 @@ contains
       finer%by_slopes = smooth
       difference = abs(smooth - finer%node_wise)
       finer%work = 0.5_wp*(max(smooth, 0.0_wp) + finer%node_wise)
-      change = abs(finer%node_wise - coarser%node_wise)*(real(coarser%increments, wp)/finer%increments)**2
+      change = abs(finer%node_wise - coarser%node_wise)
+      if (finer%rough) then
+         ! Nodes that slip and stick again within an increment are missed: first order.
+         change = change*coarser%increments/(finer%increments - coarser%increments)
+         finer%node_wise_error = max(finer%node_wise_error, change)
+      else
+         change = change*(real(coarser%increments, wp)/finer%increments)**2
+      end if
       finer%work_error = max(difference, change, corners)
       if (finer%begins .and. finer%increments > 1) then
          call dissipation_by_rates(dissipation_rates(path, interval, finer), count(slips(finer%before(finer%increments)%status)), &

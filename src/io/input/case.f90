@@ -4,7 +4,7 @@ module mfv_case
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_count, control_keep, controlled_key
    use mfv_scene, only: scene_type
-   use mfv_simulation, only: history_events, simulation_type, states_reversals
+   use mfv_simulation, only: history_events, simulation_type, states_auto
    use mfv_strings, only: to_text
    implicit none
    private
@@ -22,7 +22,7 @@ module mfv_case
       character(:), allocatable :: result_path
       !> See mfv_simulation.
       integer :: keep_history = history_events
-      integer :: keep_states = states_reversals
+      integer :: keep_states = states_auto
       !> See simulation_type.
       real(wp), allocatable :: stress_at
       !> Whether the case is also solved on coarser meshes, for an estimate of the discretisation error.

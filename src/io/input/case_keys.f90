@@ -10,7 +10,9 @@ module mfv_case_keys
    use mfv_material, only: plane_names
    use mfv_motions, only: motions, motion_count => user_motions, motion_shift, control_force, control_displacement, &
                           controlled_key, first_control
+   use mfv_run_state, only: most_turning_points
    use mfv_scene, only: algorithm_names, integration_names, most_cycles, solver_names, stepping_names
+   use mfv_strings, only: to_text
    implicit none
    private
    public :: case_catalogue
@@ -354,8 +356,10 @@ contains
                     'none', default='events', &
                     choices='events steps none')
       call keys%add('output', 'states', kind_choice, 'states saved at the end of every step, and at every turning point '// &
-                    '(reversals) or those of the last cycle (last_cycle) of its cycles; or only the last one; steps if '// &
-                    'omitted in a case with &history', default='reversals', choices='reversals steps none last_cycle')
+                    '(reversals) or those of the last cycle (last_cycle) of its cycles; or only the last one; auto: steps in '// &
+                    'a case with &history, else reversals, or last_cycle in a step that has passed '// &
+                    to_text(most_turning_points)//' turning points', default='auto', &
+                    choices='auto reversals steps none last_cycle')
       call keys%add('output', 'stress_at', kind_real, 'x at which /history has the stress along the surface of both bodies, '// &
                     'with the largest tension along it and its x, at the end of every step, row and turning point; if omitted: '// &
                     'neither', unit='length')

@@ -93,7 +93,7 @@ contains
       if (group == 'step') then
          call read_target(key, parameter, why)
          parameter%step = number
-         if (why == '' .and. (number < next .or. simulation%leg%number > 0 .and. number == next)) &
+         if (why == '' .and. (number < next .or. simulation%current%number > 0 .and. number == next)) &
             why = 'step '//to_text(number)//' has already begun; the next one is step '//to_text(next)
       else if (group /= 'body' .and. group /= 'layer' .and. group /= 'friction') then
          why = 'must be a key of &body, &layer or &friction, or a target of a step'

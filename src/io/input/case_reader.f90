@@ -15,7 +15,7 @@ module mfv_case_reader
    use mfv_mesh_reader, only: read_mesh, read_period
    use mfv_namelist, only: group_type, parse_namelists
    use mfv_scene
-   use mfv_simulation, only: states_steps
+   use mfv_simulation, only: states_auto, states_steps
    use mfv_step_reader, only: check_held, read_steps
    use mfv_text_file, only: directory_of, read_text
    implicit none
@@ -89,7 +89,7 @@ contains
       case%result_path = reader%text_value('output', 1, 'file')
       case%keep_history = reader%choice('output', 1, 'history')
       case%keep_states = reader%choice('output', 1, 'states')
-      if (count_groups(reader, 'history') > 0 .and. .not. reader%has('output', 1, 'states')) case%keep_states = states_steps
+      if (count_groups(reader, 'history') > 0 .and. case%keep_states == states_auto) case%keep_states = states_steps
       if (reader%has('output', 1, 'stress_at')) case%stress_at = reader%real_value('output', 1, 'stress_at')
       case%checkpoint_minutes = reader%real_value('output', 1, 'checkpoint_minutes')
       case%error_estimate = reader%logical_value('output', 1, 'error_estimate')

@@ -4,19 +4,23 @@
 !> `exchange` writes or reads a quantity, so that each is named once.
 module mfv_hdf5_restart
    use hdf5, only: hid_t
-   use, intrinsic :: iso_fortran_env, only: int64
-   use mfv_contact_model, only: contact_model_type
+   use, intrinsic :: iso_fortran_env, only: int8, int64
+   use mfv_checksum, only: add_to_checksum
+   use mfv_contact_model, only: adapt_model, contact_model_type
+   use mfv_contact_path, only: path_record_type
    use mfv_contact_state, only: contact_state_type, new_contact_state
    use mfv_error, only: error_type, set_error
    use mfv_friction_law, only: memory_size
    use mfv_hdf5_reader, only: read_vector
    use mfv_history, only: history_record_type, history_type
    use mfv_kinds, only: wp
-   use mfv_motions, only: motions, motion_count => user_motions, control_keep, control_displacement
+   use mfv_contact_system, only: solver_work_type
+   use mfv_motions, only: motions, motion_count, user_motions
    use mfv_node_status, only: node_creep_left, node_open
    use mfv_result_fields, only: along_nothing, field_type, list_type, step_group
+   use mfv_run_state, only: mark_count, run_record_type, snapshot_type, wear_trial_type
    use mfv_scene, only: step_type
-   use mfv_simulation, only: mark_count, simulation_type, snapshot_type, trial_type
+   use mfv_simulation, only: simulation_type
    use mfv_status, only: MFV_INPUT_ERROR
    use mfv_strings, only: to_text
    use mfv_tolerances, only: significant
@@ -31,6 +35,18 @@ module mfv_hdf5_restart
    !> Upper limit of counts.
    integer, parameter :: most = 1000000000
    character(*), parameter :: internal = 'internal values of this version of MFV, for --resume'
+
+   !> All of a run that has a fixed size. None of it may have allocatable components.
+   type :: numbers_type
+      type(path_record_type) :: path
+      type(run_record_type) :: run
+      type(solver_work_type) :: work
+      !> See saved_path_type.
+      integer :: records = 0, added = 0
+      logical :: tangential = .false., moves(motion_count) = .false.
+      !> Of the last step that was reached.
+      character(len=240) :: message = ''
+   end type numbers_type
 
    !> One group of a file that is written or read.
    type :: exchange_type
@@ -56,18 +72,17 @@ contains
       type(field_type), allocatable, intent(out) :: fields(:)
       type(exchange_type) :: to_file
       type(simulation_type) :: copy
-      integer :: i, nodes
+      integer :: i
 
       copy%position_type = simulation%position_type
       copy%restart = simulation%restart
-      copy%leg = simulation%leg
       if (allocated(simulation%cycles)) copy%cycles = simulation%cycles
-      if (allocated(simulation%trial)) call copy_trial(simulation, copy)
+      if (allocated(simulation%wear_trial)) call copy_trial(simulation, copy)
       copy%contact%model = simulation%contact%model
       copy%contact%history = simulation%contact%history
-      associate (r => copy%restart)
-         r%path%state = copy%padded(snapshot_type(state=r%path%state, added=r%added))
-         r%added = copy%contact%model%added
+      associate (saved => copy%restart%contact)
+         saved%position%state = copy%padded(snapshot_type(state=saved%position%state, added=saved%added))
+         saved%added = copy%contact%model%added
       end associate
       call copy%slip_range%widen(copy%contact%model%nodes(), copy%contact%model%added)
       do i = 1, mark_count
@@ -81,7 +96,7 @@ contains
       end do
       to_file%group = restart_group
       allocate (to_file%list%fields(0))
-      call exchange_restart(to_file, copy, nodes)
+      call exchange_restart(to_file, copy)
       call move_alloc(to_file%list%fields, fields)
    end subroutine restart_fields
 
@@ -90,14 +105,13 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(simulation_type), intent(inout) :: copy
 
-      associate (trial => simulation%trial)
-         allocate (copy%trial)
-         copy%trial%cycles = trial%cycles
-         copy%trial%correction = widened(trial%correction, simulation%contact%model%nodes())
+      associate (trial => simulation%wear_trial)
+         allocate (copy%wear_trial)
+         copy%wear_trial%cycles = trial%cycles
+         copy%wear_trial%correction = widened(trial%correction, simulation%contact%model%nodes())
          if (.not. trial%is_worn) return
-         copy%position_type = trial%position
-         copy%leg = trial%leg
-         if (allocated(trial%last_cycle)) copy%cycles = [trial%last_cycle]
+         copy%position_type = trial%start%position
+         if (allocated(trial%start%last_cycle)) copy%cycles = [trial%start%last_cycle]
       end associate
    end subroutine copy_trial
 
@@ -108,12 +122,12 @@ contains
       type(simulation_type), intent(inout) :: simulation
       type(error_type), allocatable, intent(out) :: error
       type(exchange_type) :: from_file
-      integer :: i, nodes
+      integer :: i
 
       from_file%reading = .true.
       from_file%file = file
       from_file%group = restart_group
-      call exchange_restart(from_file, simulation, nodes)
+      call exchange_restart(from_file, simulation)
       if (allocated(from_file%error)) then
          call move_alloc(from_file%error, error)
       else
@@ -124,40 +138,29 @@ contains
       end if
    end subroutine read_restart
 
-   !> All of the group `restart`. `nodes`: of the mesh in the file.
-   subroutine exchange_restart(self, simulation, nodes)
+   !> All of the group `restart`.
+   subroutine exchange_restart(self, simulation)
       type(exchange_type), intent(inout) :: self
       type(simulation_type), intent(inout) :: simulation
-      integer, intent(out) :: nodes
-      integer :: i
+      logical :: wears
+      integer :: nodes, i
 
-      nodes = simulation%contact%model%nodes()
       self%prefix = ''
       call exchange_scene(self, simulation%contact%model)
-      associate (r => simulation%restart, steps => simulation%contact%model%scene%steps)
-         call self%exchange('added_nodes', r%added, 'nodes added to the mesh at either end', 0, most/10)
-         nodes = nodes + 2*(r%added - simulation%contact%model%added)
-         call self%exchange('steps_done', simulation%scene_steps_done, 'steps reached', 0, size(steps))
-         call self%exchange('segment', r%leg, 'segment of the next step, 1 if it has not begun', 1, most)
-         call self%exchange('states', simulation%snapshot_count, 'states in steps before that segment', 0, most)
-         call self%exchange('cycles_done', simulation%cycles_done, 'complete cycles of all steps', 0, most)
-         call self%exchange('linear_solves', r%solves, 'linear solves before that segment', 0, most)
-         call exchange_counter(self, 'iterations', r%iterations, 'iterations of the linear solver')
-         call exchange_counter(self, 'products', r%products, 'products with the compliance')
-         if (simulation%scene_steps_done == size(steps) .and. r%leg > 1) call self%complain('segment')
+      call exchange_numbers(self, simulation)
+      associate (steps => simulation%contact%model%scene%steps)
          if (any(steps%row > 0)) call exchange_targets(self, steps)
-         do i = 1, size(r%load)
-            call self%exchange('control_'//to_text(i), r%load(i)%control, 'control of motion '//to_text(i), control_keep, &
-                               control_displacement)
-            call self%exchange('load_'//to_text(i), r%load(i)%value, 'load of motion '//to_text(i))
-         end do
-         if (self%reading .and. .not. allocated(self%error)) call read_snapshots(self, simulation, nodes)
-         if (simulation%contact%model%scene%wear%acts()) call exchange_trial(self, nodes, simulation%trial)
-         call exchange_internals(self, simulation)
-         call exchange_state(self, 'state_', nodes, simulation%contact%model%scene%wear%acts(), r%path%state)
       end associate
+      if (allocated(self%error)) return
+      nodes = simulation%contact%model%nodes()
+      wears = simulation%contact%model%scene%wear%acts()
+      if (self%reading) call read_snapshots(self, simulation)
+      if (wears) call exchange_trial(self, nodes, simulation%wear_trial)
+      call exchange_cycles(self, simulation)
+      call exchange_history(self, simulation%restart%contact%records, simulation%contact%history)
+      call exchange_state(self, 'state_', nodes, wears, simulation%restart%contact%position%state)
       associate (slip => simulation%slip_range)
-         if (self%reading) call slip%widen(nodes, simulation%restart%added)
+         if (self%reading) call slip%widen(nodes, simulation%contact%model%added)
          call self%exchange('lowest_slip', slip%lowest, 'smallest slip of the nodes in contact in the present cycle')
          call self%exchange('highest_slip', slip%highest, 'largest slip of the nodes in contact in the present cycle')
       end associate
@@ -168,8 +171,8 @@ contains
       do i = 1, mark_count
          associate (mark => simulation%marks(i))
             if (mark%step == 0) cycle
-            mark%added = simulation%restart%added
-            call exchange_state(self, 'mark_'//to_text(i)//'_', nodes, simulation%contact%model%scene%wear%acts(), mark%state)
+            mark%added = simulation%contact%model%added
+            call exchange_state(self, 'mark_'//to_text(i)//'_', nodes, wears, mark%state)
          end associate
       end do
       if (allocated(self%error) .or. .not. simulation%contact%model%tangential) return
@@ -178,6 +181,51 @@ contains
                             'slip at which the nodes are stuck in '//step_group(i))
       end do
    end subroutine exchange_restart
+
+   !> What has a fixed size. A simulation that reads it has the mesh and the problem of that time afterwards.
+   subroutine exchange_numbers(self, simulation)
+      type(exchange_type), intent(inout) :: self
+      type(simulation_type), intent(inout) :: simulation
+      type(numbers_type) :: numbers
+      integer, allocatable :: list(:)
+
+      associate (saved => simulation%restart%contact, run => simulation%restart%position%run_record_type)
+         numbers = numbers_type(saved%position%path_record_type, run, saved%work, saved%records, saved%added, saved%tangential, &
+                                saved%moves, simulation%restart%position%message)
+         list = transfer(numbers, [0])
+         list = [list, checksum_of(list)]
+         call self%exchange('numbers', list, internal)
+         if (allocated(self%error)) return
+         if (self%reading) then
+            associate (last => size(list) - 2)
+               if (any(list(last + 1:) /= checksum_of(list(:last)))) call self%complain('numbers')
+            end associate
+            if (allocated(self%error)) return
+            numbers = transfer(list, numbers)
+            saved%position%path_record_type = numbers%path
+            run = numbers%run
+            saved%work = numbers%work
+            saved%records = numbers%records
+            saved%added = numbers%added
+            saved%tangential = numbers%tangential
+            saved%moves = numbers%moves
+            simulation%restart%position%message = trim(numbers%message)
+            call adapt_model(simulation%contact%model, saved%added, saved%tangential, saved%moves)
+         end if
+         simulation%run_record_type = run
+      end associate
+   end subroutine exchange_numbers
+
+   !> The checksum of integers, as two integers.
+   pure function checksum_of(list)
+      integer, intent(in) :: list(:)
+      integer :: checksum_of(2)
+      integer(int64) :: checksum
+
+      checksum = 0
+      call add_to_checksum(transfer(list, [0_int8]), checksum)
+      checksum_of = transfer(checksum, checksum_of)
+   end function checksum_of
 
    !> Identify the scene by positions, gaps, coefficients of friction, and displacements under uneven tractions, at the initial
    !> nodes of the mesh.
@@ -227,70 +275,34 @@ contains
          call set_error(self%error, MFV_INPUT_ERROR, 'the result of another case: the file of the load history has changed')
    end subroutine exchange_targets
 
-   !> Internal records: of the certificate, of rolling, of slip zones and of cycles.
-   subroutine exchange_internals(self, simulation)
+   !> The cycles so far.
+   subroutine exchange_cycles(self, simulation)
       type(exchange_type), intent(inout) :: self
       type(simulation_type), intent(inout) :: simulation
       integer, allocatable :: list(:)
-      integer :: length
 
-      associate (r => simulation%restart)
-         call self%exchange('events', r%path%events, 'loads at which nodes changed their status', 0, huge(1))
-         call self%exchange('trial', r%path%trial, 'length of the next increment, as a fraction of a segment')
-         call self%exchange('work', r%path%work, 'work of the force of every motion')
-         call self%exchange('work_error', r%path%work_error, 'estimated error of these over the accuracy')
-         list = transfer(r%path%certificate, [0])
-         call self%exchange('certificate', list, internal)
-         r%path%certificate = transfer(list, r%path%certificate)
-         list = transfer(r%path%leaving, [0])
-         call self%exchange('leaving', list, internal)
-         r%path%leaving = transfer(list, r%path%leaving)
-         list = transfer(r%path%rolling, [0])
-         call self%exchange('rolling', list, internal)
-         r%path%rolling = transfer(list, r%path%rolling)
-         list = transfer(r%slip, [0])
-         call self%exchange('slip_zones', list, internal)
-         r%slip = transfer(list, r%slip)
-      end associate
-      list = transfer(simulation%extremes, [0])
-      call self%exchange('extremes', list, internal)
-      simulation%extremes = transfer(list, simulation%extremes)
-      do length = 1, size(simulation%yield_estimate, 2)
-         call self%exchange('yield_estimate_'//to_text(length), simulation%yield_estimate(:, length), &
-                            'estimates of the largest von Mises stresses so far')
-      end do
-      list = transfer(simulation%leg%cycle, [0])
-      length = size(list)
-      call self%exchange('cycle_under_way', list, internal)
-      simulation%leg%cycle = transfer(list, simulation%leg%cycle)
-      call self%exchange('cycles', simulation%cycle_count, 'cycles in cycle_list', 0, most/length)
-      if (allocated(self%error)) return
       if (self%reading) allocate (simulation%cycles(max(simulation%cycle_count, 1)))
-      if (simulation%cycle_count > 0) then
-         list = transfer(simulation%cycles(:simulation%cycle_count), [0], length*simulation%cycle_count)
-         call self%exchange('cycle_list', list, internal)
-         simulation%cycles(:simulation%cycle_count) = transfer(list, simulation%cycles, simulation%cycle_count)
-      end if
-      call exchange_history(self, simulation%restart%records, simulation%contact%history)
-   end subroutine exchange_internals
+      if (simulation%cycle_count == 0) return
+      list = transfer(simulation%cycles(:simulation%cycle_count), [0])
+      call self%exchange('cycles', list, internal)
+      simulation%cycles(:simulation%cycle_count) = transfer(list, simulation%cycles, simulation%cycle_count)
+   end subroutine exchange_cycles
 
    !> The first `records` records of the load history.
    subroutine exchange_history(self, records, history)
       type(exchange_type), intent(inout) :: self
-      integer, intent(inout) :: records
+      integer, intent(in) :: records
       type(history_type), intent(inout) :: history
-      type(history_record_type) :: one
       integer, allocatable :: list(:)
 
-      call self%exchange('records', records, 'records in record_list', 0, most/size(transfer(one, [0])))
-      if (allocated(self%error) .or. records == 0) return
+      if (records == 0) return
       if (self%reading) then
          history%records = records
          if (allocated(history%record)) deallocate (history%record)
          allocate (history%record(records))
       end if
       list = transfer(history%record(:records), [0])
-      call self%exchange('record_list', list, internal)
+      call self%exchange('records', list, internal)
       history%record(:records) = transfer(list, history%record, records)
    end subroutine exchange_history
 
@@ -298,7 +310,7 @@ contains
    subroutine exchange_trial(self, nodes, trial)
       type(exchange_type), intent(inout) :: self
       integer, intent(in) :: nodes
-      type(trial_type), allocatable, intent(inout) :: trial
+      type(wear_trial_type), allocatable, intent(inout) :: trial
       integer :: begins
 
       begins = merge(1, 0, allocated(trial))
@@ -325,7 +337,7 @@ contains
       if (self%reading) state = new_contact_state(nodes, wears)
       self%prefix = prefix
       call exchange_visible(self, state)
-      call exchange_motions(self, state, motions(:motion_count)%optional)
+      call exchange_motions(self, state, motions(:user_motions)%optional)
       call self%exchange('skipped_dissipation', state%skipped_dissipation, 'energy dissipated in cycles that are not computed')
       call self%exchange('friction_work', state%friction_work, 'energy dissipated per unit of surface')
       call self%exchange('cycle_work', state%cycle_work, 'magnitudes of the friction work of this cycle')
@@ -353,7 +365,7 @@ contains
       if (any(state%status < node_open .or. state%status > node_creep_left)) call self%complain('status')
       call self%exchange('pressure', state%fields%pressure, 'pressure')
       call self%exchange('shear', state%fields%shear, 'shear traction')
-      call exchange_motions(self, state,.not. motions(:motion_count)%optional)
+      call exchange_motions(self, state,.not. motions(:user_motions)%optional)
       call self%exchange('dissipation', state%dissipation, 'energy dissipated so far')
    end subroutine exchange_visible
 
@@ -361,10 +373,10 @@ contains
    subroutine exchange_motions(self, state, which)
       type(exchange_type), intent(inout) :: self
       type(contact_state_type), intent(inout) :: state
-      logical, intent(in) :: which(motion_count)
+      logical, intent(in) :: which(user_motions)
       integer :: i
 
-      do i = 1, motion_count
+      do i = 1, user_motions
          if (.not. which(i)) cycle
          call self%exchange(trim(motions(i)%key), state%fields%motion(i), trim(motions(i)%key))
          call self%exchange(trim(motions(i)%force_key), state%fields%force(i), trim(motions(i)%force_name))
@@ -372,10 +384,9 @@ contains
    end subroutine exchange_motions
 
    !> The states of steps and reversals before the restart.
-   subroutine read_snapshots(self, simulation, nodes)
+   subroutine read_snapshots(self, simulation)
       type(exchange_type), intent(inout) :: self
       type(simulation_type), intent(inout) :: simulation
-      integer, intent(in) :: nodes
       integer :: i
 
       if (simulation%snapshot_count > size(simulation%snapshots)) then
@@ -385,15 +396,15 @@ contains
       do i = 1, simulation%snapshot_count
          associate (snapshot => simulation%snapshots(i), model => simulation%contact%model)
             self%group = step_group(i)
-            snapshot%state = new_contact_state(nodes, model%scene%wear%acts())
+            snapshot%state = new_contact_state(model%nodes(), model%scene%wear%acts())
             call exchange_visible(self, snapshot%state)
-            call exchange_motions(self, snapshot%state, motions(:motion_count)%optional .and. model%moves(:motion_count))
+            call exchange_motions(self, snapshot%state, motions(:user_motions)%optional .and. model%moves(:user_motions))
             if (model%tangential) call self%exchange('friction_work', snapshot%state%friction_work, '')
             if (model%scene%wear%acts()) call self%exchange('wear_depth', snapshot%state%worn, '')
             call self%exchange('step', snapshot%step, '', 1, size(model%scene%steps))
             call self%exchange('reversal', snapshot%reversal, '', 1, huge(1))
             if (allocated(self%error)) return
-            snapshot%added = simulation%restart%added
+            snapshot%added = model%added
          end associate
       end do
       self%group = restart_group
@@ -457,19 +468,6 @@ contains
       call self%exchange(name, values, meaning, least, most)
       value = values(1)
    end subroutine exchange_integer
-
-   !> Counters that may be larger than a default integer.
-   subroutine exchange_counter(self, name, counter, meaning)
-      type(exchange_type), intent(inout) :: self
-      character(*), intent(in) :: name, meaning
-      integer(int64), intent(inout) :: counter
-      real(wp), parameter :: most = 9.0e15_wp
-      real(wp) :: value
-
-      value = real(counter, wp)
-      call self%exchange(name, value, meaning)
-      counter = nint(max(min(value, most), 0.0_wp), int64)
-   end subroutine exchange_counter
 
    !> Error for an impossible value.
    subroutine complain(self, name)

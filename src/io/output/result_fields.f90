@@ -15,6 +15,7 @@ module mfv_result_fields
    use mfv_error_bar
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
+   use mfv_load_cycles, only: present_edge_fields
    use mfv_load_extremes, only: candidate_tension, extreme_type
    use mfv_material, only: material_type, plane_names
    use mfv_motions, only: motions, motion_count => user_motions, motion_approach, motion_shift, motion_rotation, bulk_motions
@@ -580,7 +581,7 @@ call list%add('contact_right', simulation%contact%model%scene%x_of_arc(patches%r
       if (present(observed)) then
          call add_patch_edges(list, observed%edges)
       else
-         call add_patch_edges(list, simulation%edge_fields(patches))
+         call add_patch_edges(list, present_edge_fields(simulation, patches))
       end if
       if (.not. simulation%contact%model%tangential) return
       call list%add('stick_zones', [(size(patches(i)%stick), i=1, size(patches))], along, 'number of stick zones in the '// &
@@ -812,7 +813,7 @@ call list%add('contact_right', simulation%contact%model%scene%x_of_arc(patches%r
       if (simulation%contact%model%scene%method%stepping == stepping_leap) then
          call list%add('increment_traction_error', simulation%contact%certificate%increment_traction_error, '1', &
                        "stepping='leap': largest estimated error of the tractions by large increments, relative to the "// &
-                       "largest traction")
+                       "largest traction; on rough surfaces a root mean square, relative to that of the tractions")
          call list%add('increment_dissipation_error', simulation%contact%certificate%increment_dissipation_error, '1', &
                        "stepping='leap': largest estimated error of the dissipation of a load segment by large increments, "// &
                        "relative to that dissipation")

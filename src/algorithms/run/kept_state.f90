@@ -5,10 +5,9 @@
 !> without them can be restored to any saved state of its scene.
 module mfv_kept_state
    use, intrinsic :: iso_fortran_env, only: int64
-   use mfv_contact_path, only: saved_path_type
-   use mfv_cycle, only: cycle_type
    use mfv_error, only: error_type, set_error
-   use mfv_simulation, only: history_none, position_type, simulation_type
+   use mfv_run_state, only: saved_run_type
+   use mfv_simulation, only: simulation_type
    use mfv_status, only: MFV_BAD_ARGUMENT
    implicit none
    private
@@ -16,10 +15,7 @@ module mfv_kept_state
 
    type :: kept_state_type
       private
-      type(saved_path_type) :: contact
-      type(position_type) :: position
-      !> The last cycle, if there is no load history.
-      type(cycle_type), allocatable :: last_cycle
+      type(saved_run_type) :: run
       integer(int64) :: scene = 0, history_checksum = 0
       logical :: is_saved = .false.
    contains
@@ -35,10 +31,7 @@ contains
       type(simulation_type), intent(in) :: simulation
       integer(int64), intent(in) :: scene
 
-      call simulation%contact%save_to(self%contact)
-      self%position = simulation%position_type
-      if (allocated(self%last_cycle)) deallocate (self%last_cycle)
-      if (simulation%cycle_count > 0 .and. simulation%keep_history == history_none) self%last_cycle = simulation%cycles(1)
+      call simulation%save_to(self%run)
       self%is_saved = .true.
       self%scene = scene
       self%history_checksum = simulation%history_checksum()
@@ -56,14 +49,12 @@ contains
          call set_error(error, MFV_BAD_ARGUMENT, 'no state has been saved; save one first')
       else if (scene /= self%scene) then
          call set_error(error, MFV_BAD_ARGUMENT, 'the state is of another scene')
-      else if (.not. simulation%passed_through(self%position%load_summary%steps, self%history_checksum)) then
+      else if (.not. simulation%passed_through(self%run%position%load_summary%steps, self%history_checksum)) then
          call set_error(error, MFV_BAD_ARGUMENT, 'the state is not part of the load history so far; set &output '// &
                         "history='none', states='none' to restore any saved state")
       end if
       if (allocated(error)) return
-      call simulation%contact%restore(self%contact)
-      simulation%position_type = self%position
-      if (allocated(self%last_cycle) .and. simulation%keep_history == history_none) simulation%cycles = [self%last_cycle]
+      call simulation%restore(self%run)
       if (allocated(simulation%estimate)) deallocate (simulation%estimate)
       if (allocated(simulation%sensitivity)) deallocate (simulation%sensitivity)
    end subroutine come_back
