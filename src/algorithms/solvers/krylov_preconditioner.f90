@@ -1,10 +1,9 @@
 !> Approximate inverses of the diagonal blocks C_wp and C_ut on the nodes of a contact, each in O(n log n).
 !>
-!> On consecutive nodes a block that depends on the distance only (half-planes, layers, also on a surface that repeats) is a Toeplitz
-!> matrix with a known exact inverse (mfv_toeplitz_inverse): the iteration then only resolves the coupling of pressure and shear,
-!> whose strength does not depend on the mesh. Other bodies respond to nearby tractions like a half-plane, by the logarithm of the
-!> distance, which takes the place of the blocks. On other sets of nodes, and where
-!> nodes are held by bristles (softness c > 0, mfv_krylov_system), which need 1/(C_ut + c), it is an approximate sparse inverse
+!> On consecutive nodes a block that depends on the distance only (half-planes, layers, also on a surface that repeats) is a
+!> Toeplitz matrix with a known exact inverse (mfv_toeplitz_inverse): the iteration then only resolves the coupling of pressure and
+!> shear, whose strength does not depend on the mesh. Other bodies respond to nearby tractions like a half-plane, by the logarithm
+!> of the distance, which takes the place of the blocks. On other sets of nodes, and where nodes are held by bristles (softness c > 0, mfv_krylov_system), which need 1/(C_ut + c), it is an approximate sparse inverse
 !> (mfv_sparse_inverse). Nodes whose friction decreases with slip (c < 0) are treated as independent: where the bodies can unload as
 !> fast as friction decreases, |c| dominates C_ut + c.
 module mfv_krylov_preconditioner
@@ -28,8 +27,8 @@ module mfv_krylov_preconditioner
       private
       !> The number of nodes.
       integer :: nodes = 0
-      !> Entries by distance of C_wp, and of C_ut over `shear_ratio`, length^3/force in the units of the system, without the constants
-      !> below. Shape (at least nodes).
+      !> Entries by distance of C_wp, and of C_ut over `shear_ratio`, length^3/force in the units of the system, without the
+      !> constants below. Shape (at least nodes).
       real(wp), allocatable :: kernel(:), held_kernel(:)
       real(wp) :: shear_ratio = 1.0_wp
       !> What all entries of C_wp and C_ut have beyond the kernels, if these are those of the blocks (`by_distance`).
@@ -81,8 +80,8 @@ contains
       allocate (self%contact, self%held)
    end subroutine prepare
 
-   !> The `kernel` by distance of a block with positive eigenvalues, over `unit`, and the `constant` that its entries have beyond it:
-   !> those of the block, or next to the diagonal those of the logarithm.
+   !> The `kernel` by distance of a block with positive eigenvalues, over `unit`, and the `constant` that its entries have beyond
+   !> it: those of the block, or next to the diagonal those of the logarithm.
    subroutine find_kernel(compliance, block, unit, kernel, constant)
       class(compliance_type), intent(in) :: compliance
       integer, intent(in) :: block

@@ -102,8 +102,8 @@ contains
 
    !> Find the predictor of `order` by conjugate gradients, from scratch. If they do not converge, the order becomes 0.
    !> The matrix and its preconditioner are the parts, of this order, of one circulant matrix of at least twice the order and of its
-   !> inverse without regard to the signs of the eigenvalues. (A few are negative where the kernel of a surface that repeats increases
-   !> again.)
+   !> inverse without regard to the signs of the eigenvalues. (A few are negative where the kernel of a surface that repeats
+   !> increases again.)
    subroutine find_predictor(self, kernel, order)
       class(toeplitz_inverse_type), intent(inout) :: self
       real(wp), intent(in) :: kernel(:)
