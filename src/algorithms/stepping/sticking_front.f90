@@ -1,13 +1,14 @@
 !> The slip at which nodes hold that have stuck within a large increment.
 !>
 !> While a stick zone grows, each of its new nodes holds at the slip S(x) that it had when the edge of the zone passed. E is the
-!> first node beyond the zone; next to the edge c the slip differs from S by (x - c)^(5/2) only, so that S(E) is about the slip of E
-!> at the end. Near the edge c0 at the start, the slip since the start is the integral of (x - c)^(3/2) over the way of c: S - s0
+!> first node beyond the zone; next to the edge c the slip differs from S by (x - c)^(5/2) only, so that S(E) is about the slip of
+!> E at the end. Near the edge c0 at the start, the slip since the start is the integral of (x - c)^(3/2) over the way of c: S - s0
 !> grows as (x - c0)^(5/2), s0 the slip at the start, even if the edge rests before it moves (then with a part in (x - c0)^(3/2)).
 !> So it is taken where the zone grows within the nearer part of what slipped at the start. Beyond that S is the cubic through E
-!> and three nodes that have held: the outermost one, and two further in, as far from each other as E is further out. A contact that begins within the
-!> increment grows in proportion to its shape (exactly so for a power of x, under loads that grow in proportion): there S follows
-!> the gap before the increment. If it has begun in an increment before and still does, S is that cubic everywhere.
+!> and three nodes that have held: the outermost one, and two further in, as far from each other as E is further out. A contact
+!> that begins within the increment grows in proportion to its shape (exactly so for a power of x, under loads that grow in
+!> proportion): there S follows the gap before the increment. If it has begun in an increment before and still does, S is that
+!> cubic everywhere.
 !>
 !> S depends on the slip of E, an unknown of the same increment: slip(E) = s + sum of r theta over the slips theta that are assumed
 !> for the outer nodes, r the responses to unit slips. The fronts to the left and to the right of all stick zones are two groups,
