@@ -432,7 +432,7 @@ def test_existing_results_survive_failed_runs(tmp_path):
 def test_long_load_histories_fit_into_a_file(tmp_path):
     text = BODIES + (
         "&mesh nodes=3, half_width=0.01 / &friction law='coulomb', mu=0.7 / &step normal_force=1e-4 /"
-        "&step tangential_force=2e-5, cycles=1500 / &output history='steps' /"
+        "&step tangential_force=2e-5, cycles=1500 / &output history='steps', states='reversals' /"
     )
     assert mfv_run(case(tmp_path, text).name, cwd=tmp_path).returncode == COMPLETE
     with h5py.File(tmp_path / "case.h5") as result:
