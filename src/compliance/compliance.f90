@@ -31,11 +31,11 @@ module mfv_compliance
       real(wp) :: modulus = 1.0_wp
       !> Which blocks exist; and which would with vertical normals: only these contain elastic coupling.
       logical :: has_block(4) = .false., elastic_block(4) = .false.
-      !> Whether it is the same everywhere along the surface: blocks depend on the distance only. Half-planes and layers in equal
-      !> intervals.
-      logical :: by_distance = .false.
-      !> Whether C_ut is then C_wp times `shear_ratio`, up to a constant. Half-planes in equal intervals.
+      !> Whether it is the same everywhere along the surface: blocks depend on the distance only, and C_ut is C_wp times
+      !> `shear_ratio`, up to a constant. Half-planes in equal intervals.
       logical :: is_homogeneous = .false.
+      !> Whether it is then the logarithm of the distance and a constant: not on a surface that repeats.
+      logical :: is_logarithmic = .false.
       !> C_ut over C_wp next to a load.
       real(wp) :: shear_ratio = 1.0_wp
       !> Estimated error of numerical kernels, over their largest value.

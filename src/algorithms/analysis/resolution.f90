@@ -16,8 +16,6 @@ module mfv_resolution
    use mfv_simulation, only: simulation_type
    use mfv_slip_zones, only: contact_interval, hidden_width_at_edge, is_narrow_stick_zone, needed_mesh, nodes_at_edge, &
                              resolved_nodes, slip_record_type
-   use mfv_state_interior, only: find_largest_tension, surface_stress_at
-   use mfv_stress_search, only: largest_type
    use mfv_strings, only: has_word, to_text
    use mfv_tolerances, only: certified
    use mfv_zone_edges, only: find_patches, find_zone_edges, held, is_beyond_corner, patch_type, rises_at_end, zone_edges_type, &
@@ -188,26 +186,15 @@ contains
       if (has_interior(simulation%contact%model%scene%upper)) names = trim(names)//' upper_tension'
    end function tensions
 
-   !> The tensions of both bodies at the end and over the history, as `tensions_of` names them.
+   !> These and the largest over the history.
    function largest_tensions(simulation) result(names)
       type(simulation_type), intent(in) :: simulation
       character(len=72) :: names
 
-      names = trim(tensions_of(simulation, .false.))//tensions_of(simulation, .true.)
+      names = tensions(simulation)
+      if (has_interior(simulation%contact%model%scene%lower)) names = trim(names)//' largest_lower_tension'
+      if (has_interior(simulation%contact%model%scene%upper)) names = trim(names)//' largest_upper_tension'
    end function largest_tensions
-
-   !> The tensions of the lower or the `upper` body at the end and over the history, after blanks and padded with them.
-   function tensions_of(simulation, upper) result(names)
-      type(simulation_type), intent(in) :: simulation
-      logical, intent(in) :: upper
-      character(len=36) :: names
-
-      names = ''
-      associate (scene => simulation%contact%model%scene)
-         if (merge(has_interior(scene%upper), has_interior(scene%lower), upper)) &
-            names = merge(' upper_tension largest_upper_tension', ' lower_tension largest_lower_tension', upper)
-      end associate
-   end function tensions_of
 
    !> The tensions at the end and, where that may be the largest one, over the history.
    function tensions_at_end(simulation) result(names)
@@ -599,66 +586,36 @@ contains
                                 'opposite slip has only '//to_text(nodes)//trim(merge(' node ', ' nodes', nodes == 1)), &
                                 'use more nodes')
          end if
-         call check_jumps(.false.)
-         call check_jumps(.true.)
+         call check_jumps()
          call check_narrow_zones()
       end associate
 
    contains
 
-      !> Where slip was opposite and one side sticks now, the shear still changes its sign within a few nodes: without the stick
-      !> zone that was there the tension has no limit in the body that the shear pulls apart.
-      subroutine check_jumps(upper)
-         logical, intent(in) :: upper
-         !> Part of the change from one friction limit to the other.
+      !> Where slip was opposite and one side sticks now, the shear still changes its sign within a node or two: without the stick
+      !> zone that was there the tension has no limit.
+      subroutine check_jumps()
          real(wp), parameter :: nearly = 0.5_wp
-         integer, parameter :: reach = 3
-         integer, allocatable :: run(:)
-         logical :: goes_around
-         integer :: node, intervals, n, i
+         integer, parameter :: reach = 2
+         integer :: node, next
 
-         names = adjustl(tensions_of(simulation, upper))
+         names = adjustl(largest_tensions(simulation))
          if (names == '') return
          associate (model => simulation%contact%model, state => simulation%contact%state)
-            n = model%nodes()
-            goes_around = model%repeats_beyond(1, -1) .and. model%repeats_beyond(n, 1)
-            do node = 1, n
-               do intervals = 1, reach
-                  if (node + intervals > n .and. .not. goes_around) exit
-                  run = [(modulo(node + i - 1, n) + 1, i=0, intervals)]
-                  if (.not. all(in_contact(state%status(run)))) exit
-                  associate (ends => run([1, intervals + 1]), pulls => merge(-1.0_wp, 1.0_wp, upper))
-                     associate (pull => pulls*state%fields%shear(ends))
-                        if (pull(1) >= 0.0_wp .or. pull(2) <= 0.0_wp) cycle
-                        if (pull(2) - pull(1) < nearly*sum(model%static_friction(ends)*state%fields%pressure(ends))) cycle
-                        if (is_far_below(upper, run(1 + intervals/2), pull(2) - pull(1))) cycle
-                     end associate
-                  end associate
-                  call add_unresolved(unresolved, names, 'near x = '//to_text(model%x(node), 4)//' the shear changes its '// &
-                                      'sign within '//to_text(intervals)//trim(merge(' interval ', ' intervals', &
-                                                                                     intervals == 1)), 'use more nodes')
-                  return
+            associate (limit => model%static_friction*state%fields%pressure, shear => state%fields%shear)
+               do node = 1, model%nodes() - 1
+                  do next = node + 1, min(node + reach, model%nodes())
+                     if (.not. all(in_contact(state%status(node:next))) .or. shear(node)*shear(next) >= 0.0_wp) cycle
+                     if (abs(shear(node)) < nearly*limit(node) .or. abs(shear(next)) < nearly*limit(next)) cycle
+                     call add_unresolved(unresolved, names, 'near x = '//to_text(model%x(node), 4)//' the shear changes its '// &
+                                         'sign within '//to_text(next - node)//trim(merge(' interval ', ' intervals', &
+                                                                                          next == node + 1)), 'use more nodes')
+                     return
+                  end do
                end do
-            end do
+            end associate
          end associate
       end subroutine check_jumps
-
-      !> Whether the stress along the surface at a node is below the largest tension by more than the change of the shear,
-      !> force/length^2: a sharper jump would not make it the largest. Not known around a fit, with two nodes at every x.
-      logical function is_far_below(upper, node, change)
-         logical, intent(in) :: upper
-         integer, intent(in) :: node
-         real(wp), intent(in) :: change
-         type(largest_type) :: largest
-         logical :: available
-
-         is_far_below = .false.
-         associate (model => simulation%contact%model, state => simulation%contact%state)
-            if (model%scene%is_neat()) return
-            call find_largest_tension(model, state, upper, largest, available)
-            if (available) is_far_below = surface_stress_at(model, state, upper, model%x(node)) + change < largest%value
-         end associate
-      end function is_far_below
 
       !> One of several stick zones that has one or two nodes may not be there on another mesh.
       subroutine check_narrow_zones()

@@ -1,12 +1,11 @@
 !> Approximate inverses of the diagonal blocks C_wp and C_ut on the nodes of a contact, each in O(n log n).
 !>
-!> On consecutive nodes a block that depends on the distance only (half-planes, layers, also on a surface that repeats) is a
-!> Toeplitz matrix with a known exact inverse (mfv_toeplitz_inverse): the iteration then only resolves the coupling of pressure and
-!> shear, whose strength does not depend on the mesh. Other bodies respond to nearby tractions like a half-plane, by the logarithm
-!> of the distance, which takes the place of the blocks. On other sets of nodes, and where nodes are held by bristles (softness c >
-!> 0, mfv_krylov_system), which need 1/(C_ut + c), it is an approximate sparse inverse (mfv_sparse_inverse). Nodes whose friction
-!> decreases with slip (c < 0) are treated as independent: where the bodies can unload as fast as friction decreases, |c| dominates
-!> C_ut + c.
+!> The surface of every elastic body responds to nearby tractions like a half-plane, by the logarithm of the distance. On
+!> consecutive nodes this is a Toeplitz matrix with a known exact inverse (mfv_toeplitz_inverse): on a half-plane the iteration then
+!> only resolves the coupling of pressure and shear, whose strength does not depend on the mesh. On other sets of nodes, and where
+!> nodes are held by bristles (softness c > 0, mfv_krylov_system), which need 1/(C_ut + c), it is an approximate sparse inverse
+!> (mfv_sparse_inverse). Nodes whose friction decreases with slip (c < 0) are treated as independent: where the bodies can unload as
+!> fast as friction decreases, |c| dominates C_ut + c.
 module mfv_krylov_preconditioner
    use mfv_compliance, only: block_ut, block_wp, compliance_type
    use mfv_half_plane, only: log_kernel
@@ -26,17 +25,13 @@ module mfv_krylov_preconditioner
 
    type :: krylov_preconditioner_type
       private
-      !> The number of nodes.
-      integer :: nodes = 0
-      !> Entries by distance of C_wp, and of C_ut over `shear_ratio`, length^3/force in the units of the system, without the
-      !> constants below. Shape (at least nodes).
-      real(wp), allocatable :: kernel(:), held_kernel(:)
+      !> Entries by distance, length^3/force in the units of the system.
+      real(wp), allocatable :: kernel(:)
+      !> C_ut is the kernel times this. What the entries of C_wp and C_ut next to the diagonal, and all of those of half-planes,
+      !> have beyond these.
       real(wp) :: shear_ratio = 1.0_wp
-      !> What all entries of C_wp and C_ut have beyond the kernels, if these are those of the blocks (`by_distance`).
       real(wp), public :: constant = 0.0_wp, shear_constant = 0.0_wp
-      logical :: by_distance = .false., has_shear = .false.
-      !> Whether both kernels are the same.
-      logical :: shares_kernel = .true.
+      logical :: is_logarithmic = .false., has_shear = .false.
       !> (Both allocatable: otherwise gfortran 12 does not free the components of the second.)
       type(block_type), allocatable :: contact, held
       !> Softness of the held nodes where it is negative, else 0, shape (held).
@@ -59,61 +54,44 @@ contains
       class(krylov_preconditioner_type), intent(inout) :: self
       class(compliance_type), intent(in) :: compliance
       real(wp), intent(in) :: unit
-      real(wp) :: first(1, 1)
+      integer :: distance, middle, n
+      real(wp) :: near(1, 2), factor, least
 
-      if (self%nodes == compliance%nodes .and. (self%has_shear .eqv. compliance%has_block(block_ut))) return
-      self%nodes = compliance%nodes
-      self%has_shear = compliance%has_block(block_ut)
-      self%by_distance = compliance%by_distance
-      self%shares_kernel = compliance%is_homogeneous .or. .not. (self%by_distance .and. self%has_shear)
-      self%shear_ratio = compliance%shear_ratio
-      call find_kernel(compliance, block_wp, unit, self%kernel, self%constant)
-      self%held_kernel = self%kernel
-      self%shear_constant = self%constant*self%shear_ratio
-      if (.not. self%shares_kernel) then
-         call find_kernel(compliance, block_ut, unit*self%shear_ratio, self%held_kernel, self%shear_constant)
-         self%shear_constant = self%shear_ratio*self%shear_constant
-      else if (self%has_shear) then
-         call compliance%entries(block_ut, [1], [1], first)
-         self%shear_constant = first(1, 1)/unit - self%shear_ratio*self%kernel(1)
+      if (allocated(self%kernel)) then
+         if (2*compliance%nodes <= size(self%kernel) .and. (self%has_shear .eqv. compliance%has_block(block_ut))) return
       end if
+      self%has_shear = compliance%has_block(block_ut)
+      n = compliance%nodes
+      middle = (n + 1)/2
+      near = 0.0_wp
+      call compliance%entries(block_wp, [middle], [middle], near(:, 1:1))
+      call compliance%entries(block_wp, [middle], [min(middle + 1, n)], near(:, 2:2))
+      factor = (near(1, 1) - near(1, 2))/log_kernel(2.0_wp)
+      if (.not. factor > 0.0_wp) factor = near(1, 1)/log_kernel(2.0_wp)
+      ! Positive definite on surfaces shorter than four times the distance at which a force leaves no displacement.
+      least = factor*(2.0_wp*log(16.0_wp*n) + 2.0_wp)
+      if (allocated(self%kernel)) deallocate (self%kernel)
+      allocate (self%kernel(4*n + 1))
+      do distance = 0, 4*n
+         self%kernel(distance + 1) = (max(near(1, 1), least) - factor*log_kernel(2.0_wp*distance))/unit
+      end do
+      self%constant = near(1, 1)/unit - self%kernel(1)
+      self%shear_ratio = compliance%shear_ratio
+      self%shear_constant = 0.0_wp
+      if (compliance%has_block(block_ut)) then
+         call compliance%entries(block_ut, [middle], [middle], near(:, 1:1))
+         self%shear_constant = near(1, 1)/unit - self%shear_ratio*self%kernel(1)
+      end if
+      self%is_logarithmic = compliance%is_logarithmic
       if (allocated(self%contact)) deallocate (self%contact, self%held)
       allocate (self%contact, self%held)
    end subroutine prepare
-
-   !> The `kernel` by distance of a block with positive eigenvalues, over `unit`, and the `constant` that its entries have beyond
-   !> it: those of the block, or next to the diagonal those of the logarithm.
-   subroutine find_kernel(compliance, block, unit, kernel, constant)
-      class(compliance_type), intent(in) :: compliance
-      integer, intent(in) :: block
-      real(wp), intent(in) :: unit
-      real(wp), allocatable, intent(out) :: kernel(:)
-      real(wp), intent(out) :: constant
-      real(wp) :: row(1, compliance%nodes), factor
-      integer :: first, i, n
-
-      n = compliance%nodes
-      first = merge(1, (n + 1)/2, compliance%by_distance)
-      row = 0.0_wp
-      call compliance%entries(block, [first], [(i, i=first, n)], row(:, :n - first + 1))
-      kernel = row(1, :)/unit
-      if (.not. compliance%by_distance) then
-         factor = kernel(1)
-         if (n > 1) factor = kernel(1) - kernel(2)
-         if (.not. factor > 0.0_wp) factor = kernel(1)
-         factor = factor/log_kernel(2.0_wp)
-         kernel = kernel(1) - factor*log_kernel(2.0_wp*[(real(i, wp), i=0, n - 1)])
-      end if
-      ! The displacement at the most distant node becomes as large as its difference to the nearest one, at least.
-      constant = -max(kernel(1) - 2.0_wp*minval(kernel), 0.0_wp)
-      kernel = kernel - constant
-   end subroutine find_kernel
 
    !> Whether the inverses are those of the blocks without the `constant` in their entries, up to round-off.
    pure logical function is_exact(self)
       class(krylov_preconditioner_type), intent(in) :: self
 
-      is_exact = self%by_distance .and. self%contact%is_toeplitz .and. self%held%is_toeplitz
+      is_exact = self%is_logarithmic .and. self%contact%is_toeplitz .and. self%held%is_toeplitz
       if (is_exact) is_exact = all(self%softness >= 0.0_wp)
    end function is_exact
 
@@ -141,11 +119,7 @@ contains
 
       firm = softness >= 0.0_wp
       self%softness = min(softness, 0.0_wp)
-      if (self%shares_kernel) then
-         call set_block(self%held, self%kernel, pack(nodes, firm), pack(softness/self%shear_ratio, firm), self%contact)
-      else
-         call set_block(self%held, self%held_kernel, pack(nodes, firm), pack(softness/self%shear_ratio, firm))
-      end if
+      call set_block(self%held, self%kernel, pack(nodes, firm), pack(softness/self%shear_ratio, firm), self%contact)
    end subroutine set_held
 
    !> Set the nodes of a block, ascending, and their softness. `other`: a block whose inverse may be a start.

@@ -101,9 +101,8 @@ contains
    end function is_far
 
    !> Find the predictor of `order` by conjugate gradients, from scratch. If they do not converge, the order becomes 0.
-   !> The matrix and its preconditioner are the parts, of this order, of one circulant matrix of at least twice the order and of its
-   !> inverse without regard to the signs of the eigenvalues. (A few are negative where the kernel of a surface that repeats
-   !> increases again.)
+   !> The matrix and its preconditioner are the parts, of this order, of one circulant matrix of at least twice the order and of the
+   !> inverse of that matrix.
    subroutine find_predictor(self, kernel, order)
       class(toeplitz_inverse_type), intent(inout) :: self
       real(wp), intent(in) :: kernel(:)
@@ -117,8 +116,8 @@ contains
 
       call make_symbol(kernel, order, symbol)
       self%order = 0
-      if (.not. all(abs(symbol) > 0.0_wp)) return
-      inverse = 1.0_wp/abs(symbol)
+      if (.not. all(symbol > 0.0_wp)) return
+      inverse = 1.0_wp/symbol
       allocate (work(2*(size(symbol) - 1)), spectrum(size(symbol)))
       allocate (residual(order), direction(order), image(order), solution(order), source=0.0_wp)
       residual(1) = 1.0_wp
