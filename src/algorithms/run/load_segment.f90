@@ -53,8 +53,7 @@ contains
       end if
       call self%slip%add_segment(self%contact%model, start, self%contact%state, changes_of(self), &
                                  self%contact%slip_zone_nodes, self%contact%system%tolerance)
-      self%load%control = targets%control
-      self%load%value = targets%value
+      self%load = targets
       associate (fields => self%contact%state%fields)
          if (allocated(error)) self%load = start_of(fields%force, fields%motion, targets)
       end associate

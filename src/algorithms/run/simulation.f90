@@ -4,7 +4,6 @@ module mfv_simulation
    use mfv_checksum, only: add_to_checksum
    use mfv_contact_model, only: new_contact_model
    use mfv_contact_path, only: contact_path_type, new_contact_path
-   use mfv_contact_state, only: contact_state_type
    use mfv_error, only: error_type
    use mfv_extreme_states, only: note_extremes
    use mfv_kinds, only: wp
@@ -22,10 +21,10 @@ module mfv_simulation
    use mfv_wear_cycles, only: apply_block, block_failed, block_is_due, plan_block, shorten_block
    implicit none
    private
-   public :: simulation_type, new_simulation, snapshot_type, wear_trial_type, sensitivity_type
+   public :: simulation_type, new_simulation, sensitivity_type
    public :: history_events, history_steps, history_none
-   public :: states_auto, states_reversals, states_steps, states_none, states_last_cycle, most_turning_points
-   public :: mark_loading, mark_reversal, mark_return, mark_cycle_start, mark_yield, mark_turn, mark_count
+   public :: states_auto, states_reversals, states_steps, states_none, states_last_cycle
+   public :: mark_loading, mark_reversal, mark_return, mark_cycle_start
 
    type, extends(run_state_type) :: simulation_type
       !> Segments of the scene before each step, and of all steps, for progress, shape (steps + 1).
@@ -43,8 +42,7 @@ module mfv_simulation
 contains
 
    !> A simulation of a scene, at its start. Its outcome is MFV_INPUT_ERROR if the scene has a fault. `keep_history`:
-   !> history_events, history_steps or history_none. `keep_states`: see states_auto
-   !> and so on; states_reversals by default.
+   !> history_events, history_steps or history_none. `keep_states`: see states_auto and so on; states_reversals by default.
    function new_simulation(scene, keep_history, keep_states) result(self)
       type(scene_type), intent(in) :: scene
       integer, intent(in) :: keep_history
@@ -186,19 +184,18 @@ contains
       do i = 1, motion_count
          if (step%control(i) /= control_keep) call self%contact%begin_motion(i)
       end do
-      call set_ends(self, step, self%contact%state)
+      call set_ends(self, step)
       if (step%cycles > 0) call begin_cycles(self)
    end subroutine begin_step
 
-   !> The loads at both ends of a step that begins at the state `start`: its targets, and the loads to which its cycles return.
-   subroutine set_ends(self, step, start)
+   !> The loads at both ends of a step that begins here: its targets, and the loads to which its cycles return.
+   subroutine set_ends(self, step)
       class(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
-      type(contact_state_type), intent(in) :: start
 
-      self%current%there = target_of(self%load, step%control, step%target)
-      self%current%back = start_of(start%fields%force, start%fields%motion, self%current%there)
-      associate (contact => self%contact)
+      associate (contact => self%contact, fields => self%contact%state%fields)
+         self%current%there = target_of(self%load, step%control, step%target)
+         self%current%back = start_of(fields%force, fields%motion, self%current%there)
          if (allocated(contact%derivatives)) &
             call contact%derivatives%begin_step(contact%parameters, self%steps_done + 1, step%control, allocated(step%path), &
                                                 self%current%there%control)
@@ -292,14 +289,13 @@ contains
       end associate
    end subroutine record_surface
 
-   !> Continue from `restart`, which another run of the scene has stored, on the mesh of that time. Snapshots, cycles, marks,
-   !> history and slip ranges are those of that run already. The linear solver starts without history.
+   !> Continue from `restart`, which another run of the scene has stored, on the mesh of that time. The record, snapshots, cycles,
+   !> marks, history and slip ranges are those of that run already. The linear solver starts without history.
    subroutine resume(self)
       class(simulation_type), intent(inout) :: self
       integer :: i
 
       call self%contact%restore(self%restart%contact)
-      self%run_record_type = self%restart%position%run_record_type
       self%history_checksums = [(0_int64, i=1, self%load_summary%steps)]
       self%message = self%restart%position%message
    end subroutine resume

@@ -138,7 +138,7 @@ contains
       call move_alloc(trial, self%wear_trial)
    end subroutine shorten_block
 
-   !> Note the start of the present block in `trial`, for shorter ones and for a restart.
+   !> Note the start of the present block in `wear_trial`, for shorter ones and for a restart.
    subroutine note_block(self)
       class(run_state_type), intent(inout) :: self
 

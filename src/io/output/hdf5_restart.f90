@@ -78,6 +78,7 @@ contains
       copy%restart = simulation%restart
       if (allocated(simulation%cycles)) copy%cycles = simulation%cycles
       if (allocated(simulation%wear_trial)) call copy_trial(simulation, copy)
+      copy%run_record_type = copy%restart%position%run_record_type
       copy%contact%model = simulation%contact%model
       copy%contact%history = simulation%contact%history
       associate (saved => copy%restart%contact)
@@ -204,6 +205,7 @@ contains
             numbers = transfer(list, numbers)
             saved%position%path_record_type = numbers%path
             run = numbers%run
+            simulation%run_record_type = run
             saved%work = numbers%work
             saved%records = numbers%records
             saved%added = numbers%added
@@ -212,7 +214,6 @@ contains
             simulation%restart%position%message = trim(numbers%message)
             call adapt_model(simulation%contact%model, saved%added, saved%tangential, saved%moves)
          end if
-         simulation%run_record_type = run
       end associate
    end subroutine exchange_numbers
 
