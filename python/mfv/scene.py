@@ -40,8 +40,10 @@ else:
 
 #: A coefficient of friction: one value, or one per node.
 Coefficient = Union[float, Sequence[float], NDArray[np.float64]]
-#: Positions along the surface.
-Positions = Union[Sequence[float], NDArray[np.float64]]
+#: Several numbers, such as positions along the surface.
+Numbers = Union[Sequence[float], NDArray[np.float64]]
+#: Loads of turning points: one value for each, or one for all.
+LoadList = Union[float, Sequence[float], NDArray[np.float64]]
 
 #: Arrays in place of a file: datasets by name.
 Data = Mapping[str, NDArray[np.float64]]
@@ -125,6 +127,7 @@ class KeyGroup:
 class Layer(KeyGroup):
     """A layer bonded on a body: the keys of &layer, without `body`. Materials as those of bodies."""
 
+    # keys of &layer
     thickness: float
     elasticity: Literal["isotropic", "orthotropic", "anisotropic"] | None = None
     shear_modulus: float | None = None
@@ -138,20 +141,19 @@ class Layer(KeyGroup):
     poisson_ratio_13: float | None = None
     poisson_ratio_23: float | None = None
     shear_modulus_12: float | None = None
-    compliances: Positions | None = None
+    compliances: Numbers | None = None
     axis_angle: float | None = None
+    # end of keys
 
 
-class Elastic(TypedDict, total=False):
-    """Keys of every body that may be elastic."""
+class Material(TypedDict, total=False):
+    """Keys of a material: those of &layer but the thickness and the kinds."""
 
+    # keys of a material
     shear_modulus: float | None
     youngs_modulus: float | None
     poisson_ratio: float | None
-    rigid: bool | None
     yield_strength: float | None
-    datum: float | None
-    elasticity: Literal["own", "half_plane", "orthotropic", "anisotropic"] | None
     youngs_modulus_1: float | None
     youngs_modulus_2: float | None
     youngs_modulus_3: float | None
@@ -159,8 +161,17 @@ class Elastic(TypedDict, total=False):
     poisson_ratio_13: float | None
     poisson_ratio_23: float | None
     shear_modulus_12: float | None
-    compliances: Positions | None
+    compliances: Numbers | None
     axis_angle: float | None
+    # end of keys
+
+
+class Elastic(Material, total=False):
+    """Keys of every body that may be elastic."""
+
+    rigid: bool | None
+    datum: float | None
+    elasticity: Literal["own", "half_plane", "orthotropic", "anisotropic"] | None
     layers: Sequence[Layer] | None
 
 
@@ -192,6 +203,7 @@ class Body(KeyGroup):
     """A body: the keys of &body. `data`: arrays in place of the `file` of a profile or a matrix. `layers`: bonded on it, from the
     surface down; on a rigid body they are all that deforms."""
 
+    # keys of &body
     shape: Literal[
         "half_plane", "disk", "hole", "flat_punch", "rounded_punch", "wedge", "power", "profile", "matrix", "wave", "edge"
     ]
@@ -219,7 +231,7 @@ class Body(KeyGroup):
     poisson_ratio_13: float | None = None
     poisson_ratio_23: float | None = None
     shear_modulus_12: float | None = None
-    compliances: Positions | None = None
+    compliances: Numbers | None = None
     axis_angle: float | None = None
     kernel: Literal["exact", "fourier"] | None = None
     harmonics: int | None = None
@@ -229,6 +241,7 @@ class Body(KeyGroup):
     height_scale: float | None = None
     level: Literal["none", "mean", "line", "parabola"] | None = None
     centred: bool | None = None
+    # end of keys
     data: Data | None = None
     layers: Sequence[Layer] | None = None
 
@@ -328,20 +341,23 @@ class Body(KeyGroup):
 class Mesh(KeyGroup):
     """The mesh: the keys of &mesh."""
 
+    # keys of &mesh
     nodes: int | None = None
     half_width: float | None = None
     half_angle: float | None = None
     period: float | None = None
     refine: Literal["none", "edges"] | None = None
-    ends: Positions | None = None
+    ends: Numbers | None = None
     gap: Literal["exact", "parabolic"] | None = None
     normals: Literal["vertical", "radial"] | None = None
+    # end of keys
 
 
 @_keywords_only
 class Friction(KeyGroup):
     """Friction: the keys of &friction. `data`: arrays in place of `mu_file`."""
 
+    # keys of &friction
     law: Literal["none", "coulomb", "static_kinetic", "weakening", "dahl"] | None = None
     mu: Coefficient | None = None
     mu_static: Coefficient | None = None
@@ -350,6 +366,7 @@ class Friction(KeyGroup):
     weakening_distance: float | None = None
     stiffness: float | None = None
     exponent: float | None = None
+    # end of keys
     data: Data | None = None
 
     _not_keys: ClassVar[tuple[str, ...]] = ("data",)
@@ -382,16 +399,19 @@ class Wear(KeyGroup):
     """Wear of the surfaces in steps with cycles: the keys of &wear. `coefficient`: depth over pressure times slip (law='archard')
     or over the work of friction per unit of surface (law='work') [length^2/force]."""
 
+    # keys of &wear
     coefficient: float
     law: Literal["archard", "work"] | None = None
     tolerance: float | None = None
     block: int | None = None
+    # end of keys
 
 
 @_keywords_only
 class Step(KeyGroup):
     """One step of the load history: the keys of &step. Targets are reached linearly; loads without a target are constant."""
 
+    # keys of &step
     normal_force: float | None = None
     approach: float | None = None
     tangential_force: float | None = None
@@ -407,10 +427,7 @@ class Step(KeyGroup):
     friction: bool | None = None
     cycles: int | None = None
     steady_tolerance: float | None = None
-
-
-#: Loads of turning points: one value for each, or one for all.
-LoadList = Union[float, Sequence[float], NDArray[np.float64]]
+    # end of keys
 
 
 @_keywords_only
@@ -420,6 +437,7 @@ class History(KeyGroup):
     The last `period` turning points are passed through `cycles` times.
     """
 
+    # keys of &history
     file: str | os.PathLike[str] | None = None
     normal_force: LoadList | None = None
     approach: LoadList | None = None
@@ -436,6 +454,7 @@ class History(KeyGroup):
     period: int | None = None
     cycles: int | None = None
     steady_tolerance: float | None = None
+    # end of keys
 
     @classmethod
     def from_table(
@@ -454,6 +473,7 @@ class History(KeyGroup):
 class Solver(KeyGroup):
     """The solver: the keys of &solver."""
 
+    # keys of &solver
     algorithm: Literal["mfv", "conventional"] | None = None
     accuracy: float | None = None
     stepping: Literal["auto", "event", "nominal", "leap"] | None = None
@@ -463,19 +483,22 @@ class Solver(KeyGroup):
     iterations: int | None = None
     linear_solver: Literal["auto", "dgesv", "reduced", "fft"] | None = None
     linear_tolerance: float | None = None
+    # end of keys
 
 
 @_keywords_only
 class Output(KeyGroup):
     """The output: the keys of &output."""
 
+    # keys of &output
     file: str | os.PathLike[str] | None = None
     history: Literal["events", "steps", "none"] | None = None
     states: Literal["auto", "reversals", "steps", "none", "last_cycle"] | None = None
+    stress_at: float | None = None
     error_estimate: bool | None = None
     sensitivity: bool | None = None
     checkpoint_minutes: float | None = None
-    stress_at: float | None = None
+    # end of keys
 
 
 class Scene(KeyGroup):

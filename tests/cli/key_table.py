@@ -158,7 +158,7 @@ class Row:
 
     @property
     def right(self) -> str:
-        """What messages and --keys say that the key takes."""
+        """What messages say that the key takes."""
         if self.kind == "real":
             text = "a number"
             if self.lower > -math.inf:

@@ -163,7 +163,7 @@ def test_every_key_has_a_row_and_every_row_a_key() -> None:
             name, takes, _, unit, _ = (cell.strip() for cell in line.strip("|").split(" | ", 4))
             keys[group, name.strip("`")] = takes, unit
     assert keys.keys() == CASE.keys(), keys.keys() ^ CASE.keys()
-    assert keys == {key: (row.right, row.unit) for key, row in CASE.items()}
+    assert keys == {key: (row.right + ", or a list" * row.is_list, row.unit) for key, row in CASE.items()}
 
 
 @pytest.mark.parametrize(("group", "key", "row"), ROWS, ids=[f"{group}-{key}" for group, key, _ in ROWS])

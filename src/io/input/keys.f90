@@ -182,6 +182,7 @@ contains
       character(:), allocatable :: allowed, default
 
       call describe_allowed(key, allowed)
+      if (key%is_list) allowed = allowed//', or a list'
       default = '-'
       if (key%default /= '') default = '`'//key%default//'`'
       if (key%default /= '' .and. any(key%kind == [kind_text, kind_choice])) default = '`'//quoted(key%default)//'`'
