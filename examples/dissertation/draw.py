@@ -24,7 +24,7 @@ from matplotlib.lines import Line2D
 
 import mfv
 from mfv import NodeStatus
-from mfv.plot import CLOSED_FORM, MARKS, NUMBERS, STYLE
+from mfv.drawing import CLOSED_FORM, MARKS, NUMBERS, STYLE
 
 HERE = Path(__file__).resolve().parent
 OTHER = "#009E73"

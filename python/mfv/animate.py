@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Patch
 
-from . import plot
+from . import drawing, plot
 from ._packages import how_to_install
 from .load_history import kept_states
 from .result import Group, Result, counts
@@ -51,8 +51,8 @@ def movie(result: Result) -> Movie:
     the surfaces without friction; load over displacement with a point at the state."""
     result = result if result.steps else kept_states(result)
     is_rubbed = has_friction(result)
-    with matplotlib.rc_context(plot.STYLE):
-        picture = Figure(figsize=(3 * plot.PANEL_WIDTH, HEIGHT), dpi=RESOLUTION)
+    with matplotlib.rc_context(drawing.STYLE):
+        picture = Figure(figsize=(3 * drawing.PANEL_WIDTH, HEIGHT), dpi=RESOLUTION)
         axes = picture.subplots(1, 3)
         picture.suptitle(result.title, fontsize=12, parse_math=False)
         zones = _zones(result) if is_rubbed else []
@@ -75,7 +75,7 @@ def movie(result: Result) -> Movie:
 
     def draw(number: int) -> None:
         state = result.steps[number]
-        with matplotlib.rc_context(plot.STYLE):
+        with matplotlib.rc_context(drawing.STYLE):
             for ax, panel, limits in panels:
                 ax.clear()
                 panel(result, ax, number + 1)
@@ -85,7 +85,7 @@ def movie(result: Result) -> Movie:
         caption.set_text(_caption(result, state, number + 1))
 
     draw(len(result.steps) - 1)
-    with matplotlib.rc_context(plot.STYLE):
+    with matplotlib.rc_context(drawing.STYLE):
         picture.draw_without_rendering()
     picture.set_layout_engine("none")  # fixed panels
     return Movie(picture, draw, len(result.steps))
@@ -105,7 +105,7 @@ def save(
     program: dict[Any, Any] = {"animation.ffmpeg_path": _ffmpeg()} if path.lower().endswith(".mp4") else {}
     writer = _writer(path, frames_per_second)
     frames = FuncAnimation(moving.picture, moving.draw, frames=moving.frames, init_func=lambda: None)
-    with matplotlib.rc_context({**plot.STYLE, **program}):
+    with matplotlib.rc_context({**drawing.STYLE, **program}):
         frames.save(path, writer=writer, progress_callback=progress)
 
 
@@ -137,7 +137,7 @@ def _ffmpeg() -> str:
 
 def _zones(result: Result) -> list[Patch]:
     """Patches for a legend of the statuses that nodes have in any of the states."""
-    return [Patch(**style) for status, style in plot.ZONES.items() if status in statuses(result)]
+    return [Patch(**style) for status, style in drawing.ZONES.items() if status in statuses(result)]
 
 
 def _largest(result: Result, name: str) -> float:
@@ -168,11 +168,11 @@ def _with_margin(limits: tuple[float, float]) -> tuple[float, float]:
 
 def _draw_curve(result: Result, ax: Axes, curve: Curve) -> Any:
     """Draw load over displacement, from the history or else the states; return the moving point."""
-    with matplotlib.rc_context(plot.STYLE):
-        ax.plot(*curve.values(result), color=plot.NUMBERS, linewidth=0.8)
-        (point,) = ax.plot([], [], "o", color=plot.CLOSED_FORM, markersize=8, zorder=5)
-        ax.set_xlabel(plot._label(*curve.across_label, result.summary.unit(curve.across)))
-        ax.set_ylabel(plot._label(*curve.up_label, result.summary.unit(curve.up)))
+    with matplotlib.rc_context(drawing.STYLE):
+        ax.plot(*curve.values(result), color=drawing.NUMBERS, linewidth=0.8)
+        (point,) = ax.plot([], [], "o", color=drawing.CLOSED_FORM, markersize=8, zorder=5)
+        ax.set_xlabel(drawing.label(*curve.across_label, result.summary.unit(curve.across)))
+        ax.set_ylabel(drawing.label(*curve.up_label, result.summary.unit(curve.up)))
         ax.locator_params(axis="x", nbins=5)
         ax.margins(0.12)
     return point

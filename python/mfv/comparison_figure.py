@@ -11,17 +11,17 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from . import plot
+from . import drawing, plot
 from .compare import Comparison
 from .stress import drawn_at
-from .views import has_friction, heights
+from .views import has_friction, heights, is_sheared
 
 #: Styles of the two superposed results, and of their difference.
 STYLES: tuple[dict[str, Any], dict[str, Any]] = (
-    {"label": "first", "color": plot.NUMBERS, "linewidth": 1.0},
-    {"label": "second", "color": plot.CLOSED_FORM, "linewidth": 1.0, "linestyle": (0, (4, 2))},
+    {"label": "first", "color": drawing.NUMBERS, "linewidth": 1.0},
+    {"label": "second", "color": drawing.CLOSED_FORM, "linewidth": 1.0, "linestyle": (0, (4, 2))},
 )
-DIFFERENCE: dict[str, Any] = {"label": "second minus first", "color": plot.SURFACE, "linewidth": 0.8}
+DIFFERENCE: dict[str, Any] = {"label": "second minus first", "color": drawing.SURFACE, "linewidth": 0.8}
 
 
 def figure(comparison: Comparison, first: str = "first", second: str = "second") -> Figure:
@@ -32,7 +32,7 @@ def figure(comparison: Comparison, first: str = "first", second: str = "second")
     """
     results = comparison.first, comparison.second
     rows = [plot.pressure, plot.shear if any(map(has_friction, results)) else plot.surfaces]
-    if any(map(plot._is_sheared, results)):
+    if any(map(is_sheared, results)):
         rows.append(plot.loop)
     over: dict[Any, Callable[[Comparison, Axes], None]] = {
         plot.pressure: partial(_draw_tractions, "pressure"),
@@ -40,12 +40,12 @@ def figure(comparison: Comparison, first: str = "first", second: str = "second")
         plot.surfaces: _draw_gaps,
         plot.loop: _draw_loops,
     }
-    with matplotlib.rc_context(plot.STYLE):
-        picture = Figure(figsize=(3 * plot.PANEL_WIDTH, len(rows) * 0.92 * plot.PANEL_HEIGHT + 0.9), layout="constrained")
+    with matplotlib.rc_context(drawing.STYLE):
+        picture = Figure(figsize=(3 * drawing.PANEL_WIDTH, len(rows) * 0.92 * drawing.PANEL_HEIGHT + 0.9), layout="constrained")
         axes = picture.subplots(len(rows), 3, squeeze=False)
         for panel, row in zip(rows, axes):
             for result, ax in zip(results, row):
-                if panel is plot.loop and not plot._is_sheared(result):
+                if panel is plot.loop and not is_sheared(result):
                     ax.set_axis_off()
                 else:
                     panel(result, ax, comparison.step)
@@ -57,7 +57,7 @@ def figure(comparison: Comparison, first: str = "first", second: str = "second")
             f"Largest difference of the tractions / largest traction: {comparison.largest_difference:.3g}",
             fontsize=12,
         )
-        plot._add_legend(picture)
+        drawing.add_legend(picture)
     return picture
 
 
@@ -70,22 +70,22 @@ def _draw_tractions(name: str, comparison: Comparison, ax: Axes) -> None:
     x = np.union1d(*(drawn_at(result) for result in results))
     one, other = (np.interp(x, drawn_at(r), state[name], 0.0, 0.0) for r, state in zip(results, states))
     ax.plot(x, other - one, **DIFFERENCE)
-    plot._frame_contact(ax, comparison.first, states[0])
+    drawing.frame_contact(ax, comparison.first, states[0])
 
 
 def _draw_gaps(comparison: Comparison, ax: Axes) -> None:
     """Deformed surfaces of the lower body of both results."""
     for result, style in zip((comparison.first, comparison.second), STYLES):
         ax.plot(drawn_at(result), heights(result, result.at(comparison.step))[0], **style)
-    plot._frame_contact(ax, comparison.first, comparison.first.at(comparison.step))
+    drawing.frame_contact(ax, comparison.first, comparison.first.at(comparison.step))
 
 
 def _draw_loops(comparison: Comparison, ax: Axes) -> None:
     """Tangential force over shift, of results that are sheared."""
     for result, style in zip((comparison.first, comparison.second), STYLES):
-        if plot._is_sheared(result):
+        if is_sheared(result):
             ax.plot(result.history.shift, result.history.tangential_force, **style)
-            ax.set_xlabel(plot._label("shift", "U", result.history.unit("shift")))
+            ax.set_xlabel(drawing.label("shift", "U", result.history.unit("shift")))
     ax.locator_params(axis="x", nbins=5)
     ax.margins(0.12)
 

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from . import plot
+from . import drawing
 from .codes import NodeStatus
 from .result import Group, Result
 from .stress import drawn_at, is_radial
@@ -33,17 +33,17 @@ def patches_of(result: Result, state: Group) -> list[tuple[float, float]]:
 def _touching_nodes(state: Group) -> list[tuple[int, int]]:
     """First and last node of every patch."""
     touching = (state.status != NodeStatus.OPEN).astype(int)
-    return [(first, last) for is_patch, first, last in plot._runs(touching) if is_patch]
+    return [(first, last) for is_patch, first, last in drawing.runs(touching) if is_patch]
 
 
 def figure(result: Result, step: int | None = None) -> Figure:
     """Rows for pressure, shear traction (with friction) and gap; a wide column for all patches, a narrow one for the patch with the
-    largest load. See `plot.figure`."""
+    largest load. See `figure` in plot."""
     state = result.at(step)
     patches = patches_of(result, state)
     panels = [_pressure, _shear, _gap] if has_friction(result) else [_pressure, _gap]
     chosen = _largest(result, state)
-    with matplotlib.rc_context(plot.STYLE):
+    with matplotlib.rc_context(drawing.STYLE):
         picture = Figure(figsize=(WIDTH, ROW * len(panels) + 1.0), layout="constrained")
         axes = picture.subplots(len(panels), 2, sharex="col", squeeze=False, width_ratios=(2.4, 1.0))
         for panel, row in zip(panels, axes):
@@ -53,8 +53,8 @@ def figure(result: Result, step: int | None = None) -> Figure:
         _frame(result, patches, chosen, axes)
         axes[0, 0].set_title(f"{len(patches)} patches")
         axes[0, 1].set_title(f"patch {chosen + 1} (largest load)")
-        picture.suptitle(plot._heading(result, step), fontsize=12, parse_math=False)
-        plot._add_legend(picture, plot._caption(result, step), lines_first=False)
+        picture.suptitle(drawing.heading(result, step), fontsize=12, parse_math=False)
+        drawing.add_legend(picture, drawing.caption(result, step), lines_first=False)
     return picture
 
 
@@ -67,39 +67,39 @@ def _largest(result: Result, state: Group) -> int:
 def _pressure(result: Result, state: Group, patches: list[tuple[float, float]], ax: Axes) -> None:
     """Pressure, filled, patch by patch down to zero at its edges."""
     for number, (x, values) in enumerate(_by_patch(result, state, patches, state.pressure)):
-        ax.fill_between(x, values, color=plot.NUMBERS, alpha=0.18, linewidth=0.0)
-        ax.plot(x, values, color=plot.NUMBERS, linewidth=0.9, label="pressure" if number == 0 else "_more")
+        ax.fill_between(x, values, color=drawing.NUMBERS, alpha=0.18, linewidth=0.0)
+        ax.plot(x, values, color=drawing.NUMBERS, linewidth=0.9, label="pressure" if number == 0 else "_more")
     ax.set_ylim(0.0, 1.12 * float(state.pressure.max()))
-    ax.set_ylabel(plot._label("pressure", "p", state.unit("pressure")))
+    ax.set_ylabel(drawing.label("pressure", "p", state.unit("pressure")))
 
 
 def _shear(result: Result, state: Group, patches: list[tuple[float, float]], ax: Axes) -> None:
     """Shear traction between the limits of friction, stick and slip zones of every patch."""
-    plot._shade_zones(ax, result, state)
+    drawing.shade_zones(ax, result, state)
     for index, coefficient in friction_limits(result):
-        style = plot._limit_style(index)
+        style = drawing.limit_style(index)
         for sign in (1.0, -1.0):
             for x, values in _by_patch(result, state, patches, sign * coefficient * state.pressure):
                 ax.plot(x, values, **style)
                 style["label"] = "_more"
     for number, (x, values) in enumerate(_by_patch(result, state, patches, state.shear)):
-        ax.plot(x, values, color=plot.CLOSED_FORM, linewidth=1.0, label="shear traction" if number == 0 else "_more")
+        ax.plot(x, values, color=drawing.CLOSED_FORM, linewidth=1.0, label="shear traction" if number == 0 else "_more")
     ax.axhline(0.0, color="0.6", linewidth=0.4, zorder=0.5)
-    ax.set_ylabel(plot._label("shear traction", r"\tau", state.unit("shear")))
+    ax.set_ylabel(drawing.label("shear traction", r"\tau", state.unit("shear")))
 
 
 def _gap(result: Result, state: Group, patches: list[tuple[float, float]], ax: Axes) -> None:
     """The gap between the deformed surfaces, the patches shaded."""
     for number, (left, right) in enumerate(patches):
         ax.axvspan(
-            left, right, color=plot.WITHOUT_FRICTION, linewidth=0.0, zorder=0, label="contact patch" if number == 0 else "_more"
+            left, right, color=drawing.WITHOUT_FRICTION, linewidth=0.0, zorder=0, label="contact patch" if number == 0 else "_more"
         )
     gap = np.where(np.isfinite(state.gap), np.maximum(state.gap, 0.0), np.nan)
-    ax.fill_between(drawn_at(result), gap, color=plot.SURFACE, alpha=0.18, linewidth=0.0)
-    ax.plot(drawn_at(result), gap, color=plot.SURFACE, linewidth=0.9, label="gap")
+    ax.fill_between(drawn_at(result), gap, color=drawing.SURFACE, alpha=0.18, linewidth=0.0)
+    ax.plot(drawn_at(result), gap, color=drawing.SURFACE, linewidth=0.9, label="gap")
     ax.set_ylim(bottom=0.0)
-    ax.set_ylabel(plot._label("gap", "g", state.unit("gap")))
-    ax.set_xlabel(plot._label(*along_surface(result)))
+    ax.set_ylabel(drawing.label("gap", "g", state.unit("gap")))
+    ax.set_xlabel(drawing.label(*along_surface(result)))
 
 
 def _by_patch(

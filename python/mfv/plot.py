@@ -7,68 +7,35 @@ result has, `cycles_figure` one of its cycles, `edges_figure` one of its edges, 
 
 from __future__ import annotations
 
-import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Callable
 
 import matplotlib
 import numpy as np
 from matplotlib import patheffects
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
+from . import drawing, patches_figure
+from . import edges_figure as edges_picture
 from .codes import EventKind, NodeStatus
 from .errors import MfvError
-from .result import Group, Result, counts, is_last
+from .result import Group, Result, is_last
 from .stress import NAMES, Largest, StressField, contact_edges, drawn_at, grid, is_radial, stored, stress, surface_at
 from .views import (
-    along_surface,
     contact,
     friction_limits,
     has_friction,
     has_last_normal_force,
     heights,
-    intervals,
     is_named,
+    is_sheared,
     limit_of_friction,
 )
 
 if TYPE_CHECKING:
     from .fatigue import ParameterMap
-
-#: Colours from Okabe and Ito, distinguishable with colour blindness.
-NUMBERS, CLOSED_FORM, SURFACE, MARKS = "#0072B2", "#D55E00", "#009E73", "#000000"
-STICK, RIGHT, LEFT, WITHOUT_FRICTION = "#DCEBF5", "#FBE3B4", "#EBD3E1", "#EEEEEE"
-ZONES: dict[int, dict[str, Any]] = {
-    status: {"label": label, "facecolor": colour, "edgecolor": edge, "hatch": hatch}
-    for status, label, colour, edge, hatch in (
-        (NodeStatus.STICK, "stick", STICK, "none", None),
-        (NodeStatus.SLIP_RIGHT, "lower surface slips to the right", RIGHT, "#C9A24B", "///"),
-        (NodeStatus.SLIP_LEFT, "lower surface slips to the left", LEFT, "#B98AA6", "\\\\\\"),
-        (NodeStatus.CREEP_RIGHT, "lower surface creeps to the right", STICK, "#9FC3DA", "//"),
-        (NodeStatus.CREEP_LEFT, "lower surface creeps to the left", STICK, "#9FC3DA", "\\\\"),
-        (NodeStatus.FRICTIONLESS, "frictionless contact", WITHOUT_FRICTION, "none", None),
-    )
-}
-
-STYLE: dict[Any, Any] = {
-    "font.family": ["STIXGeneral"],
-    "mathtext.fontset": "stix",
-    "font.size": 11,
-    "axes.titlesize": 11,
-    "axes.linewidth": 0.6,
-    "axes.formatter.use_mathtext": True,
-    "axes.formatter.limits": (-3, 4),
-    "hatch.linewidth": 0.4,
-    "legend.frameon": False,
-    "xtick.direction": "in",
-    "ytick.direction": "in",
-    "xtick.top": True,
-    "ytick.right": True,
-}
 
 #: How pictures write the stresses.
 STRESS_LABELS = {
@@ -90,17 +57,11 @@ STRESS_LABELS = {
 TENSIONS = ("sigma_xx", "sigma_thetatheta", "principal_1")
 AXES = ("normalised", "physical")
 
-#: Size of a panel with its labels in inch.
-PANEL_WIDTH, PANEL_HEIGHT = 3.6, 3.3
-
 #: Tractions of more than this times the median are spikes, which would flatten all others.
 SPIKE = 5.0
 
 #: Panels beside each other; more are in two rows.
 LONGEST_ROW = 4
-
-#: Letters of the caption per inch; width of the key of a legend entry, in letters.
-LETTERS_PER_INCH, KEY_LETTERS = 19, 9
 
 #: Turning points of a cycle that are all named on a load-displacement curve; of more, its reversals.
 NAMED_TURNS = 4
@@ -118,14 +79,12 @@ def figure(result: Result, step: int | None = None) -> Figure:
     `step`: draw `result.steps[step - 1]`, not the last state. Raises ValueError if it does not exist. For a contact with
     several patches the panels show all patches, the patch with the largest load, and the gap.
     """
-    if _loads(result, step).get("patches", 1) > 1:
-        from . import patches_figure  # here: it takes its panels from this module
-
+    if drawing.loads_of(result, step).get("patches", 1) > 1:
         return patches_figure.figure(result, step)
     panels = [pressure, shear if has_friction(result) else surfaces]
     if _is_rolled(result):
         panels.append(rolling)
-    elif _is_sheared(result):
+    elif is_sheared(result):
         panels.append(loop)
         if "nonlinear_shift" in result.history:
             panels.append(nonlinear_loop)
@@ -135,7 +94,7 @@ def figure(result: Result, step: int | None = None) -> Figure:
         panels.append(surface_stress)
     if _has_tension(result):
         panels.append(tension)
-    return _panels_in_a_row(panels, result, step, _caption(result, step))
+    return _panels_in_a_row(panels, result, step, drawing.caption(result, step))
 
 
 def cycles_figure(result: Result) -> Figure:
@@ -163,9 +122,7 @@ def edges_figure(result: Result) -> Figure:
 
     Raises ValueError without intensities.
     """
-    from . import edges_figure as picture  # here: it takes its style from this module
-
-    return picture.figure(result)
+    return edges_picture.figure(result)
 
 
 def _check_cycles(result: Result) -> None:
@@ -176,19 +133,19 @@ def _check_cycles(result: Result) -> None:
 
 def _panels_in_a_row(panels: Sequence[Panel], result: Result, step: int | None, caption: str) -> Figure:
     """A picture of panels beside each other, with a heading, a legend and a caption."""
-    with matplotlib.rc_context(STYLE):
+    with matplotlib.rc_context(drawing.STYLE):
         picture = Figure(layout="constrained")
         rows = 1 if len(panels) <= LONGEST_ROW else 2
         columns = -(-len(panels) // rows)
-        picture.set_size_inches(columns * PANEL_WIDTH, rows * PANEL_HEIGHT + 1.0)
+        picture.set_size_inches(columns * drawing.PANEL_WIDTH, rows * drawing.PANEL_HEIGHT + 1.0)
         axes = list(picture.subplots(rows, columns, squeeze=False).flat)
         for panel, ax, letter in zip(panels, axes, "abcdef"):
             panel(result, ax, step)
             ax.set_title(f"({letter})")
         for ax in axes[len(panels) :]:
             ax.remove()
-        picture.suptitle(_heading(result, step), fontsize=12, parse_math=False)
-        _add_legend(picture, caption)
+        picture.suptitle(drawing.heading(result, step), fontsize=12, parse_math=False)
+        drawing.add_legend(picture, caption)
     return picture
 
 
@@ -228,11 +185,11 @@ def stress_figure(
     field = stored(result, body=body, step=step) or grid(result, body=body, step=step)
     if np.isnan(field[name]).all():
         raise ValueError(f"{name} is not defined in a half-plane")
-    with matplotlib.rc_context(STYLE):
+    with matplotlib.rc_context(drawing.STYLE):
         picture = Figure(figsize=_stress_size(field), layout="constrained")
         units = result.mesh.unit("x"), result.state.unit("pressure")
         ax = stress_contours(field, picture.subplots(), name, colour_bar=True, axes=axes, units=units)
-        heading = _heading(result, step)
+        heading = drawing.heading(result, step)
         ax.set_title(f"{heading}: {body} body" if heading else f"{body} body", fontsize=12, parse_math=False)
         picture.supxlabel(_scales(result, field), fontsize=9, color="0.35")
     return picture
@@ -308,8 +265,8 @@ def stress_contours(
     inside = ~values.mask if np.ma.is_masked(values) else np.ones_like(values, dtype=bool)
     ax.set_xlim(x[inside].min(), x[inside].max())
     ax.set_ylim(y[inside].min(), y[inside].max())
-    ax.set_xlabel(_label("", "x", units[0]).strip() if physical else "$x/a$")
-    ax.set_ylabel(_label("", "y", units[0]).strip() if physical else "$y/a$")
+    ax.set_xlabel(drawing.label("", "x", units[0]).strip() if physical else "$x/a$")
+    ax.set_ylabel(drawing.label("", "y", units[0]).strip() if physical else "$y/a$")
     if colour_bar:
         label = f"{STRESS_LABELS[name]} [degrees]" if is_angle else f"{STRESS_LABELS[name]}$/p_0$"
         if physical and not is_angle:
@@ -339,8 +296,8 @@ def parameter_contours(
     ax.plot(peak.x, peak.y, "x", color="white", markersize=7, clip_on=False, zorder=5)
     ax.set_title(f"{field.name}: {peak.value:.4g}{_unit(units[1])} at ({_signed(peak.x)}, {_signed(peak.y)}){angle}", fontsize=10)
     ax.set_aspect("equal")
-    ax.set_xlabel(_label("", "x", units[0]).strip())
-    ax.set_ylabel(_label("", "y", units[0]).strip())
+    ax.set_xlabel(drawing.label("", "x", units[0]).strip())
+    ax.set_ylabel(drawing.label("", "y", units[0]).strip())
     if colour_bar:
         ax.figure.colorbar(contours, cax=ax.inset_axes((1.02, 0.0, 0.025, 1.0)), ticks=levels[::4])
     return ax
@@ -404,8 +361,8 @@ def pressure(result: Result, ax: Axes | None = None, step: int | None = None) ->
         _draw_closed_form(ax, result, result.reference.pressure)
     ax.set_ylim(bottom=0.0)
     _cut_spikes(ax, state.pressure[state.status != NodeStatus.OPEN])
-    ax.set_ylabel(_label("pressure", "p", state.unit("pressure")))
-    _frame_contact(ax, result, state)
+    ax.set_ylabel(drawing.label("pressure", "p", state.unit("pressure")))
+    drawing.frame_contact(ax, result, state)
     return ax
 
 
@@ -413,25 +370,19 @@ def shear(result: Result, ax: Axes | None = None, step: int | None = None) -> Ax
     """Shear traction over x with the friction limits, stick and slip zones, and the closed form if there is one."""
     ax = _axes(ax)
     state = result.at(step)
-    _shade_zones(ax, result, state)
+    drawing.shade_zones(ax, result, state)
     for index, coefficient in friction_limits(result):
         limit = limit_of_friction(coefficient, state)
-        ax.plot(drawn_at(result), limit, **_limit_style(index))
-        ax.plot(drawn_at(result), -limit, **{**_limit_style(index), "label": "_limit to the left"})
+        ax.plot(drawn_at(result), limit, **drawing.limit_style(index))
+        ax.plot(drawn_at(result), -limit, **{**drawing.limit_style(index), "label": "_limit to the left"})
     _draw_points(ax, result, state, state.shear)
     if "shear" in result.reference and is_last(result, state):
         _draw_closed_form(ax, result, result.reference.shear)
     limits = [limit_of_friction(coefficient, state) for _, coefficient in friction_limits(result)]
     _cut_spikes(ax, np.max(np.abs([state.shear, *limits]), axis=0)[state.status != NodeStatus.OPEN])
-    ax.set_ylabel(_label("shear traction", r"\tau", state.unit("shear")))
-    _frame_contact(ax, result, state)
+    ax.set_ylabel(drawing.label("shear traction", r"\tau", state.unit("shear")))
+    drawing.frame_contact(ax, result, state)
     return ax
-
-
-def _limit_style(index: str) -> dict[str, Any]:
-    """How a limit of friction is drawn: the kinetic one is dashed."""
-    label = rf"limit $\pm\mu_{index} p$" if index else r"limit $\pm\mu p$"
-    return {"color": "0.35", "linewidth": 0.7, "linestyle": (0, (2, 2)) if index == "k" else "-", "label": label}
 
 
 def surfaces(result: Result, ax: Axes | None = None, step: int | None = None) -> Axes:
@@ -439,13 +390,13 @@ def surfaces(result: Result, ax: Axes | None = None, step: int | None = None) ->
     ax = _axes(ax)
     state = result.at(step)
     lower, upper = heights(result, state)
-    _draw_points(ax, result, state, lower, label="surface of the lower body", color=SURFACE)
-    ax.plot(drawn_at(result), upper, color=MARKS, linewidth=0.9, label="surface of the upper body")
-    ax.set_ylabel(_label("height", "y", state.unit("gap")))
-    middle, least = float(np.mean(ax.get_ylim())), 1.0e-3 * abs(float(_loads(result, step)["approach"]))
+    _draw_points(ax, result, state, lower, label="surface of the lower body", color=drawing.SURFACE)
+    ax.plot(drawn_at(result), upper, color=drawing.MARKS, linewidth=0.9, label="surface of the upper body")
+    ax.set_ylabel(drawing.label("height", "y", state.unit("gap")))
+    middle, least = float(np.mean(ax.get_ylim())), 1.0e-3 * abs(float(drawing.loads_of(result, step)["approach"]))
     if np.ptp(ax.get_ylim()) < least:  # flat: no axis of round-off
         ax.set_ylim(middle - least, middle + least)
-    _frame_contact(ax, result, state)
+    drawing.frame_contact(ax, result, state)
     return ax
 
 
@@ -455,12 +406,14 @@ def loop(result: Result, ax: Axes | None = None, step: int | None = None) -> Axe
     history = result.history
     shift, force = history.shift, history.tangential_force
     has_events = not np.isin(history.event_kind, (EventKind.START, EventKind.STEP_END, EventKind.STOPPED)).all()
-    _curve(ax, shift, force, color=NUMBERS, linewidth=0.8 if has_events else 0.0, **_points(len(shift)), label="computed")
+    _curve(ax, shift, force, color=drawing.NUMBERS, linewidth=0.8 if has_events else 0.0, **_points(len(shift)), label="computed")
     if "shift" in result.reference:
         style: dict[str, Any] = {"linestyle": (0, (4, 3))} if has_events else {"linestyle": "none", "marker": "x"}
-        _curve(ax, result.reference.shift, force, color=CLOSED_FORM, linewidth=0.9, label="closed form", markersize=4, **style)
-    across = _label("shift", "U", history.unit("shift"))
-    up = _label("tangential force", "Q", history.unit("tangential_force"))
+        _curve(
+            ax, result.reference.shift, force, color=drawing.CLOSED_FORM, linewidth=0.9, label="closed form", markersize=4, **style
+        )
+    across = drawing.label("shift", "U", history.unit("shift"))
+    up = drawing.label("tangential force", "Q", history.unit("tangential_force"))
     return _finished_curve(ax, result, step, ("shift", "tangential_force"), (across, up))
 
 
@@ -479,9 +432,9 @@ def nonlinear_loop(result: Result, ax: Axes | None = None, step: int | None = No
     if "nonlinear_shift" not in history:
         raise ValueError("no non-linear shift to draw: the result has no history, or its shift is constant")
     ax = _axes(ax)
-    _curve(ax, history.nonlinear_shift, history.tangential_force, color=NUMBERS, linewidth=0.8)
-    across = _label("non-linear shift", "U - Q/k", history.unit("nonlinear_shift"))
-    up = _label("tangential force", "Q", history.unit("tangential_force"))
+    _curve(ax, history.nonlinear_shift, history.tangential_force, color=drawing.NUMBERS, linewidth=0.8)
+    across = drawing.label("non-linear shift", "U - Q/k", history.unit("nonlinear_shift"))
+    up = drawing.label("tangential force", "Q", history.unit("tangential_force"))
     return _finished_curve(ax, result, step, ("nonlinear_shift", "tangential_force"), (across, up), ticks=4)
 
 
@@ -490,9 +443,9 @@ def friction_work(result: Result, ax: Axes | None = None, step: int | None = Non
     _check_cycles(result)
     ax = _axes(ax)
     cycles = result.cycles
-    ax.plot(drawn_at(result), cycles.friction_work, color=NUMBERS, linewidth=0.8, **_points(result.mesh.x.size))
-    ax.set_ylabel(_label("dissipation per cycle and area", "d", cycles.unit("friction_work")))
-    _frame_contact(ax, result, result.at(step))
+    ax.plot(drawn_at(result), cycles.friction_work, color=drawing.NUMBERS, linewidth=0.8, **_points(result.mesh.x.size))
+    ax.set_ylabel(drawing.label("dissipation per cycle and area", "d", cycles.unit("friction_work")))
+    drawing.frame_contact(ax, result, result.at(step))
     return ax
 
 
@@ -501,8 +454,8 @@ def turning(result: Result, ax: Axes | None = None, step: int | None = None) -> 
     ax = _axes(ax)
     history = result.history
     points = _points(history.rotation.size)
-    _curve(ax, history.rotation, history.moment, color=NUMBERS, linewidth=0.8, **points, label="computed")
-    labels = r"rotation $\varphi$ [rad]", _label("moment", "M", history.unit("moment"))
+    _curve(ax, history.rotation, history.moment, color=drawing.NUMBERS, linewidth=0.8, **points, label="computed")
+    labels = r"rotation $\varphi$ [rad]", drawing.label("moment", "M", history.unit("moment"))
     return _finished_curve(ax, result, step, ("rotation", "moment"), labels)
 
 
@@ -510,9 +463,9 @@ def rolling(result: Result, ax: Axes | None = None, step: int | None = None) -> 
     """Sliding over the rolled distance, whose slope is the creepage; step ends are numbered, `step` is bold."""
     ax = _axes(ax)
     history = result.history
-    _curve(ax, history.rolled, history.slid, color=NUMBERS, linewidth=0.8, **_points(len(history.slid)), label="computed")
-    across = _label("rolled distance", "s", history.unit("rolled"))
-    up = _label("sliding", r"U + h\varphi", history.unit("slid"))
+    _curve(ax, history.rolled, history.slid, color=drawing.NUMBERS, linewidth=0.8, **_points(len(history.slid)), label="computed")
+    across = drawing.label("rolled distance", "s", history.unit("rolled"))
+    up = drawing.label("sliding", r"U + h\varphi", history.unit("slid"))
     return _finished_curve(ax, result, step, ("rolled", "slid"), (across, up))
 
 
@@ -526,7 +479,7 @@ def tension(result: Result, ax: Axes | None = None, step: int | None = None) -> 
         of_step = np.flatnonzero((history.event_kind == EventKind.STEP_END) & (history.step == result.cycles.step[-1]))
         turns = of_step.size // int(np.count_nonzero(result.cycles.step == result.cycles.step[-1]))
         first = int(of_step[max(of_step.size - turns - 1, 0)])
-    for body, color in (("lower", NUMBERS), ("upper", CLOSED_FORM)):
+    for body, color in (("lower", drawing.NUMBERS), ("upper", drawing.CLOSED_FORM)):
         if f"{body}_tension" not in history:
             continue
         ends = np.isfinite(history[f"{body}_surface_stress"]) & (np.arange(history.step.size) >= first)
@@ -537,7 +490,7 @@ def tension(result: Result, ax: Axes | None = None, step: int | None = None) -> 
         ax.plot(rows, stress, color=color, linewidth=0.8, linestyle=(0, (4, 3)), label=f"{body}, at stress_at")
     ax.set_xlabel("turning point of the last cycle" if result.cycles else "load segment")
     ax.xaxis.set_major_locator(MaxNLocator(6, integer=True))
-    ax.set_ylabel(_label("stress along the surface", r"\sigma", result.state.unit("pressure")))
+    ax.set_ylabel(drawing.label("stress along the surface", r"\sigma", result.state.unit("pressure")))
     return ax
 
 
@@ -552,15 +505,17 @@ def surface_stress(result: Result, ax: Axes | None = None, step: int | None = No
     for number, style in zip([*shown, step], [*((0, (k + 1, 1.5)) for k in range(len(shown))), "-"]):
         x = _surface_points(result, body, number)
         field = stress(result, *surface_at(result, body, x), body=body, step=number)
-        color = NUMBERS if number == step else "0.45"
+        color = drawing.NUMBERS if number == step else "0.45"
         label = f"{'state ' if number else 'last state'}{number or ''}"
         ax.plot(x, field[name], color=color, linewidth=1.0, linestyle=style, label=f"{body} body, {label}")
         if number == step and np.isfinite(field.tension.x) and field.tension.value > 0.0:
             _mark_tension(ax, field.tension, result)
     ax.set_ylabel(
-        _label("stress along the surface", r"\sigma_{xx}" if name == "sigma_xx" else r"\sigma", result.state.unit("pressure"))
+        drawing.label(
+            "stress along the surface", r"\sigma_{xx}" if name == "sigma_xx" else r"\sigma", result.state.unit("pressure")
+        )
     )
-    _frame_contact(ax, result, result.at(step))
+    drawing.frame_contact(ax, result, result.at(step))
     return ax
 
 
@@ -572,7 +527,7 @@ def _mark_tension(ax: Axes, peak: Largest, result: Result) -> None:
     if is_radial(result):  # the surface rises from y = 0 on either side of the origin
         place = float(np.degrees(2.0 * np.arctan2(np.sign(peak.x) * abs(peak.y), abs(peak.x)))) if peak.x else 0.0
     beside = place < 0.5 * (left + right)
-    ax.plot(place, peak.value, "o", color=MARKS, markersize=5, markerfacecolor="none", clip_on=False)
+    ax.plot(place, peak.value, "o", color=drawing.MARKS, markersize=5, markerfacecolor="none", clip_on=False)
     text = f"{peak.value:.4g}{units[0]}\nat $x$ = {_signed(peak.x)}{units[1]}"
     ax.annotate(text, (place, peak.value), xytext=(10 if beside else -10, -2), textcoords="offset points",
                 ha="left" if beside else "right", va="top", fontsize=9)  # fmt: skip
@@ -630,22 +585,9 @@ def _axes(ax: Axes | None) -> Axes:
         return ax
     from matplotlib import pyplot  # here, since it needs a display
 
-    with matplotlib.rc_context(STYLE):
-        _, made = pyplot.subplots(figsize=(PANEL_WIDTH, PANEL_HEIGHT), layout="constrained")
+    with matplotlib.rc_context(drawing.STYLE):
+        _, made = pyplot.subplots(figsize=(drawing.PANEL_WIDTH, drawing.PANEL_HEIGHT), layout="constrained")
     return made
-
-
-def _loads(result: Result, step: int | None) -> Group:
-    """Loads and counts of that state."""
-    return result.summary if step is None else result.at(step)
-
-
-def _is_sheared(result: Result) -> bool:
-    """Whether the load history has a tangential force above round-off."""
-    if not has_friction(result) or not result.history:
-        return False
-    negligible = 1.0e-9 * np.max(np.abs(result.history.normal_force))
-    return bool(np.any(np.abs(result.history.tangential_force) > negligible))
 
 
 def _is_turned(result: Result) -> bool:
@@ -673,10 +615,12 @@ def _draw_closed_form(ax: Axes, result: Result, values: np.ndarray) -> None:
     touching_pressure = result.reference.pressure[inside]
     if touching_pressure.size > 0 and touching_pressure[0] < touching_pressure.max():
         x, y = np.pad(x, 1, constant_values=(middle - half_width, middle + half_width)), np.pad(y, 1)
-    ax.plot(x, y, color=CLOSED_FORM, linewidth=0.9, label="closed form")
+    ax.plot(x, y, color=drawing.CLOSED_FORM, linewidth=0.9, label="closed form")
 
 
-def _draw_points(ax: Axes, result: Result, state: Group, values: np.ndarray, label: str = "computed", color: str = NUMBERS) -> None:
+def _draw_points(
+    ax: Axes, result: Result, state: Group, values: np.ndarray, label: str = "computed", color: str = drawing.NUMBERS
+) -> None:
     points = _points(int(np.count_nonzero(state.status != NodeStatus.OPEN)))
     ax.plot(drawn_at(result), values, linestyle="none", color=color, **points, label=label)
 
@@ -684,17 +628,6 @@ def _draw_points(ax: Axes, result: Result, state: Group, values: np.ndarray, lab
 def _points(number: int) -> dict[str, Any]:
     """Markers, smaller for more points."""
     return {"marker": "o", "markersize": float(np.clip(350.0 / max(number, 1), 1.0, 3.5)), "markeredgewidth": 0.0}
-
-
-def _shade_zones(ax: Axes, result: Result, state: Group) -> None:
-    """Background of the stick and slip zones; of each kind the first has the label."""
-    starts, ends = intervals(result)
-    labelled: set[int] = set()
-    for status, first, last in _runs(state.status):
-        if status in ZONES:
-            style = ZONES[status] if status not in labelled else {**ZONES[status], "label": "_another zone"}
-            ax.axvspan(starts[first], ends[last], linewidth=0.0, zorder=0, **style)
-            labelled.add(status)
 
 
 def _cut_spikes(ax: Axes, sizes: np.ndarray) -> None:
@@ -705,20 +638,6 @@ def _cut_spikes(ax: Axes, sizes: np.ndarray) -> None:
     bottom = ax.get_ylim()[0]
     ax.set_ylim(max(bottom, -usual) if bottom < 0.0 else bottom, usual)
     ax.text(0.5, 0.97, f"at the corners up to {largest:.3g}", transform=ax.transAxes, ha="center", va="top", fontsize=9)
-
-
-def _runs(values: np.ndarray) -> Iterator[tuple[int, int, int]]:
-    """Value, first and last index of every run of equal values."""
-    starts = np.flatnonzero(np.diff(values, prepend=values[0] - 1))
-    ends = np.append(starts[1:], len(values)) - 1
-    return ((int(values[first]), int(first), int(last)) for first, last in zip(starts, ends))
-
-
-def _frame_contact(ax: Axes, result: Result, state: Group) -> None:
-    """Show the contact and a quarter of its length on either side within the mesh; without contact the whole mesh."""
-    ax.set_xlim(contact(result, [state]))
-    ax.locator_params(axis="x", nbins=5)
-    ax.set_xlabel(_label(*along_surface(result)))
 
 
 def _mark_step_ends(ax: Axes, result: Result, step: int | None, across: str, up: str) -> None:
@@ -783,7 +702,7 @@ def _mark(ax: Axes, place: np.ndarray, text: str, marker: str, bold: bool, above
     ha, va, offset = ("right", "bottom", (-5, 5)) if above else ("left", "top", (5, -5))
     if is_far_right and not above and len(text) > 4:
         ha, offset = "center", (0, -6)
-    ax.plot(*place, marker=marker, markersize=7, markerfacecolor="none", markeredgecolor=MARKS, markeredgewidth=width)
+    ax.plot(*place, marker=marker, markersize=7, markerfacecolor="none", markeredgecolor=drawing.MARKS, markeredgewidth=width)
     ax.annotate(text, tuple(place), xytext=offset, textcoords="offset points", ha=ha, va=va, fontsize=9, fontweight=weight)
 
 
@@ -797,59 +716,3 @@ def _places(points: np.ndarray, numbers: list[int], tolerance: np.ndarray) -> li
         else:
             together.append(number)
     return places
-
-
-def _legend_entries(picture: Figure, lines_first: bool = True) -> tuple[list[Artist], list[str]]:
-    """Handles and labels of everything that is drawn, once, lines before zones."""
-    handles: dict[str, Artist] = {}
-    for ax in picture.axes:
-        for handle, label in zip(*ax.get_legend_handles_labels()):
-            handles.setdefault(label, handle)
-    labels = sorted(handles, key=lambda label: lines_first and isinstance(handles[label], Patch))
-    return [handles[label] for label in labels], labels
-
-
-def _add_legend(picture: Figure, caption: str = "", lines_first: bool = True) -> None:
-    """One legend below all panels of a picture with a constrained layout, lines before zones, with the caption above it."""
-    letters = int(LETTERS_PER_INCH * picture.get_figwidth())
-    handles, labels = _legend_entries(picture, lines_first)
-    rows = -(-sum(len(label) + KEY_LETTERS for label in labels) // letters) or 1
-    legend = picture.legend(
-        handles,
-        labels,
-        ncols=-(-len(labels) // rows) or 1,
-        fontsize=10,
-        loc="outside lower center",
-        title="\n".join(textwrap.fill(line, letters) for line in caption.splitlines()),
-        title_fontsize=9,
-    )
-    legend.get_title().set(color="0.35", parse_math=False, multialignment="center")
-
-
-def _heading(result: Result, step: int | None) -> str:
-    if step is None:
-        return result.title
-    state = result.at(step)
-    place = f"state {step} (step {state.step}, reversal {state.reversal})"
-    return f"{result.title}: {place}" if result.title else place
-
-
-def _caption(result: Result, step: int | None) -> str:
-    """Outcome unless complete, node counts and certificate; below, the sources of the closed forms."""
-    parts = [
-        f"{result.mesh.x.size} nodes, {counts(_loads(result, step))}",
-        f"largest relative residual {result.certificate.largest:.1e}",
-    ]
-    if result.outcome != "complete":
-        parts.insert(0, f"ended early: {result.outcome}")
-    names = [name for name in ("pressure", "shear") if name in result.reference]
-    sources = "; ".join(result.reference.description(name).split(";")[0] for name in names)
-    return " \N{MIDDLE DOT} ".join(parts) + (f"\nclosed form: {sources}" if sources else "")
-
-
-def _label(name: str, symbol: str, unit: str) -> str:
-    """Label of an axis, with the unit if the user has named it."""
-    if not is_named(unit):
-        return f"{name} ${symbol}$"
-    shown = unit.replace("$", r"\$").replace("^2", "$^2$")
-    return f"{name} ${symbol}$ [{shown}]"

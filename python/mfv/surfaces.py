@@ -181,17 +181,17 @@ def figure(result: Result, step: int | None = None) -> Figure:
     import matplotlib
     from matplotlib.figure import Figure
 
-    from . import plot
+    from . import drawing
 
     state = result.at(step)
-    with matplotlib.rc_context(plot.STYLE):
+    with matplotlib.rc_context(drawing.STYLE):
         picture = Figure(figsize=(10.8, 6.4), layout="constrained")
         axes = picture.subplots(2, 3)
         for number, ax in enumerate(axes[0]):
             _zoom(result, state, 10.0**-number, ax)
         _growth(result, axes[1, 0])
         _distributions(result, state, axes[1, 1:])
-        picture.suptitle(plot._heading(result, step), fontsize=12, parse_math=False)
+        picture.suptitle(drawing.heading(result, step), fontsize=12, parse_math=False)
     return picture
 
 

@@ -96,6 +96,14 @@ def has_friction(result: Result) -> bool:
     return not bool(np.isnan(result.state.slip).all())
 
 
+def is_sheared(result: Result) -> bool:
+    """Whether the load history has a tangential force above round-off."""
+    if not has_friction(result) or not result.history:
+        return False
+    negligible = 1.0e-9 * np.max(np.abs(result.history.normal_force))
+    return bool(np.any(np.abs(result.history.tangential_force) > negligible))
+
+
 def friction_limits(result: Result) -> list[tuple[str, np.ndarray]]:
     """Coefficients of friction at the nodes with their index in formulas: one, "", or static and kinetic, "s" and "k"."""
     mesh = result.mesh

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .. import plot
+from .. import drawing
 from .._suggestions import suggestion
 from .axes import as_written
 from .dataset import flagged, label
@@ -24,7 +24,7 @@ MOST_LINES = 12
 
 def figure(table: xarray.Dataset, column: str | None = None, over: str | None = None) -> Figure:
     """A picture of `lines`."""
-    with matplotlib.rc_context(plot.STYLE):
+    with matplotlib.rc_context(drawing.STYLE):
         picture = Figure(figsize=(6.4, 4.2), layout="constrained")
         lines(table, column, over, picture.subplots())
     return picture

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from .. import plot
+from .. import drawing
 from .._suggestions import suggestion
 from ..views import is_named
 from .dataset import flagged, label
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import xarray
 
 #: Fills of the regimes; partial slip is the ground on which the others lie.
-FILLS = {STICK: plot.STICK, PARTIAL: "#FEF3DC", SLIDING: plot.LEFT, OPEN: plot.WITHOUT_FRICTION, FAILED: "#FFFFFF"}
+FILLS = {STICK: drawing.STICK, PARTIAL: "#FEF3DC", SLIDING: drawing.LEFT, OPEN: drawing.WITHOUT_FRICTION, FAILED: "#FFFFFF"}
 DOUBT = "0.45"
 
 #: Words and symbols of the axes.
@@ -46,7 +46,7 @@ LETTER = 0.3
 
 def figure(table: xarray.Dataset, column: str | None = None) -> Figure:
     """A picture of `regimes`."""
-    with matplotlib.rc_context(plot.STYLE):
+    with matplotlib.rc_context(drawing.STYLE):
         picture = Figure(figsize=(5.6, 4.4), layout="constrained")
         regimes(table, column, picture.subplots())
     return picture
@@ -81,7 +81,7 @@ def _axis(table: xarray.Dataset, name: str) -> str:
     if name not in AXES:
         return label(table, name)
     unit = table[name].attrs.get("units", "1")
-    return plot._label(*AXES[name], "" if unit == "1" else unit)
+    return drawing.label(*AXES[name], "" if unit == "1" else unit)
 
 
 def _fill(table: xarray.Dataset, axes: Axes) -> None:
@@ -107,7 +107,7 @@ def _draw_boundaries(table: xarray.Dataset, axes: Axes) -> None:
     for number in np.unique(curve):
         of = curve == number
         style = "-" if resolved[of].all() else (0, (5, 2))
-        axes.plot(x[of], y[of], color=plot.MARKS, linewidth=1.4, linestyle=style, zorder=2.5, solid_capstyle="butt")
+        axes.plot(x[of], y[of], color=drawing.MARKS, linewidth=1.4, linestyle=style, zorder=2.5, solid_capstyle="butt")
 
 
 def _draw_contours(table: xarray.Dataset, name: str, axes: Axes) -> list[NDArray[Any]]:
@@ -118,7 +118,7 @@ def _draw_contours(table: xarray.Dataset, name: str, axes: Axes) -> list[NDArray
     if not levels.size:
         return []
     across, up = table.attrs["map_axes"]
-    lines = axes.contour(table[across].values, table[up].values, values.T, levels, colors=plot.NUMBERS, linewidths=0.8, zorder=2)
+    lines = axes.contour(table[across].values, table[up].values, values.T, levels, colors=drawing.NUMBERS, linewidths=0.8, zorder=2)
     power = _power(levels)
     texts = axes.clabel(lines, fmt=lambda value: _written(value / 10.0**power), fontsize=8)
     for text in texts:
@@ -128,7 +128,7 @@ def _draw_contours(table: xarray.Dataset, name: str, axes: Axes) -> list[NDArray
     unit = unit.replace("$", r"\$").replace("^2", "$^2$")
     shown = " ".join(part for part in (f"$10^{{{power}}}$" if power else "", unit) if part)
     meaning = f"lines: {about.get('long_name', name).split(';')[0]}"
-    axes.set_title(f"{meaning} [{shown}]" if shown else meaning, fontsize=9, color=plot.NUMBERS, loc="left", wrap=True)
+    axes.set_title(f"{meaning} [{shown}]" if shown else meaning, fontsize=9, color=drawing.NUMBERS, loc="left", wrap=True)
     to_axes = axes.transLimits
     return [np.asarray(to_axes.transform(text.get_position())) for text in texts]
 
