@@ -202,6 +202,24 @@ class Result:
         """Title of the scene, or an empty text."""
         return self.attributes.get("title", "")
 
+    @property
+    def warnings(self) -> list[str]:
+        """What is to be known before numbers are used: slip zones with few nodes, a model beyond its limits, ..."""
+        return self.attributes.get("warnings", "").splitlines()
+
+    @property
+    def unresolved(self) -> list[str]:
+        """Names of the observables that the mesh does not resolve; `warnings` say why."""
+        return self.attributes.get("unresolved", "").split()
+
+    def error_bar(self, name: str) -> float:
+        """Estimated discretisation error of an observable, in its unit: NaN where it is not resolved, infinite where it has no limit.
+        Raises ValueError for a result without error bars, with the reason; KeyError for counts and others that have none."""
+        if not self.error_estimate:
+            reason = self.attributes.get("error_estimate", "run with error_estimate=True in Output, or mfv run --estimate")
+            raise ValueError(f"no error bars: {reason.removeprefix('none: ')}")
+        return float(self.error_estimate[f"{name}_error"])
+
     def at(self, step: int | None = None) -> Group:
         """The last state, or `steps[step - 1]`. Raises ValueError if it does not exist."""
         if step is None:
@@ -239,7 +257,7 @@ class Result:
             ("certificate", f"largest relative residual {amount('largest_residual')}"),
             ("kept", kept(self)),
         ]
-        return lines + [("warning", line) for line in self.attributes.get("warnings", "").splitlines()]
+        return lines + [("warning", line) for line in self.warnings]
 
     def _amount(self, name: str) -> str:
         """A value of the summary with its unit."""

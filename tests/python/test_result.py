@@ -94,6 +94,18 @@ def test_a_file_gives_the_same_datasets(tmp_path: Path) -> None:
     assert here["error_estimate"].stick_ratio_companions.dims == ("companion_nodes",)
 
 
+def test_a_result_says_how_certain_its_observables_are(cycled: mfv.Result) -> None:
+    with pytest.raises(ValueError, match="no error bars: run with error_estimate=True"):
+        cycled.error_bar("stick_ratio")
+    few = cylinder(*TO_AND_FRO, mesh=mfv.Mesh(nodes=9), output=mfv.Output(error_estimate=True)).run()
+    assert few.unresolved and few.warnings == few.attributes["warnings"].split("\n")
+    bars = {name: few.error_bar(name) for name in few.observables if f"{name}_error" in few.error_estimate}
+    assert {name for name, bar in bars.items() if np.isnan(bar)} <= set(few.unresolved)
+    assert 0.0 < bars["contact_length"] < 0.3 * few.observables.contact_length
+    with pytest.raises(KeyError, match="stick_ratoi_error"):
+        few.error_bar("stick_ratoi")
+
+
 def test_stresses_of_a_file_run_along_depth_and_x(cycled: mfv.Result) -> None:
     grid = {"depth": ("depth",), "x": ("x",), "von_mises": ("depth", "x")}
     shapes = {"depth": np.arange(2.0), "x": np.arange(3.0), "von_mises": np.ones((2, 3))}

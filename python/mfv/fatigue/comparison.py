@@ -311,7 +311,7 @@ def predict(test: PadTest, nodes: int = 101) -> Prediction:
         }
     except ValueError as error:
         raise input_error(f"{about} has no predicted life: {error}") from None
-    notes = (*test.notes, *result.attributes.get("warnings", "").splitlines())
+    notes = (*test.notes, *result.warnings)
     return Prediction(PadTest(test.values, test.where, notes), float(result.summary.contact_half_width), lives)
 
 
