@@ -768,7 +768,8 @@ contains
 
       if (.not. allocated(self%attribute_names)) then
          call find_warnings(self)
-         call result_attributes(self%case, self%simulation, self%warnings, self%attribute_names, self%attribute_texts)
+         call result_attributes(self%case, self%simulation, self%warnings, self%attribute_names, self%attribute_texts, &
+                                self%observed)
       end if
       names => self%attribute_names
       texts => self%attribute_texts

@@ -9,9 +9,9 @@ module mfv_resolution
    use mfv_interior, only: has_interior
    use mfv_kinds, only: pi, wp
    use mfv_layers, only: layers_type
-   use mfv_motions, only: motion_approach, motion_interference, motion_shift
+   use mfv_motions, only: controlled_key, motion_approach, motion_count, motion_interference, motion_shift
    use mfv_node_status, only: holds, in_contact, slip_sign
-   use mfv_observables, only: observable_count, observables
+   use mfv_observables, only: observable_count, observables, observed_type
    use mfv_profile_sampling, only: find_missed, negligible_pressure, pressure_of_wave
    use mfv_simulation, only: simulation_type
    use mfv_slip_zones, only: contact_interval, hidden_width_at_edge, is_narrow_stick_zone, needed_mesh, nodes_at_edge, &
@@ -97,10 +97,12 @@ contains
    end function is_unresolved
 
    !> Names of the observables that the mesh of a simulation, or a coarser one of its error bars, does not resolve, separated by
-   !> blanks.
-   subroutine find_unresolved_observables(simulation, names)
+   !> blanks; prescribed loads are resolved. `observed`: what is read off the simulation, if it is known: without observables that
+   !> are not available.
+   subroutine find_unresolved_observables(simulation, names, observed)
       type(simulation_type), intent(in) :: simulation
       character(:), allocatable, intent(out) :: names
+      type(observed_type), intent(in), optional :: observed
       type(unresolved_type), allocatable :: unresolved(:)
       integer :: place
 
@@ -113,10 +115,26 @@ contains
       end if
       names = ''
       do place = 1, observable_count
+         if (present(observed)) then
+            if (ieee_is_nan(observed%values(place))) cycle
+         end if
+         if (is_prescribed(simulation, trim(observables(place)%name))) cycle
          if (is_unresolved(unresolved, trim(observables(place)%name))) names = names//' '//trim(observables(place)%name)
       end do
       names = names(min(2, len(names) + 1):)
    end subroutine find_unresolved_observables
+
+   !> Whether an observable is a load that is prescribed now.
+   pure logical function is_prescribed(simulation, name)
+      type(simulation_type), intent(in) :: simulation
+      character(*), intent(in) :: name
+      integer :: i
+
+      is_prescribed = .false.
+      do i = 1, motion_count
+         is_prescribed = is_prescribed .or. controlled_key(i, simulation%load(i)%control) == name
+      end do
+   end function is_prescribed
 
    !> The quantity or group whose name stands for an observable where quantities are not resolved, padded with blanks: for a
    !> dimensionless number its uncertain factor.

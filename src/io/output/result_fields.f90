@@ -204,17 +204,18 @@ contains
    end function field_named
 
    !> Names and texts of the attributes of a result. `warnings`: see mfv_validity; the caller finds them once, because they take a
-   !> search for the largest stress.
-   subroutine result_attributes(case, simulation, warnings, names, texts)
+   !> search for the largest stress. `observed`: as for group_fields.
+   subroutine result_attributes(case, simulation, warnings, names, texts, observed)
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
       type(string_type), intent(in) :: warnings(:)
       type(string_type), allocatable, intent(out) :: names(:), texts(:)
+      type(observed_type), intent(in), optional :: observed
       character(:), allocatable :: text, directory, unresolved
       integer :: i
 
       call find_working_directory(directory)
-      call find_unresolved_observables(simulation, unresolved)
+      call find_unresolved_observables(simulation, unresolved, observed)
       text = ''
       do i = 1, size(warnings)
          if (i > 1) text = text//achar(10)

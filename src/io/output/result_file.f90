@@ -91,7 +91,7 @@ contains
       call create_file(path, writer, error)
       if (allocated(error)) return
       if (writer%code == 0) then
-         call result_attributes(case, simulation, warnings, names, texts)
+         call result_attributes(case, simulation, warnings, names, texts, observed)
          do i = 1, size(names)
             call write_text(writer, writer%file, names(i)%text, texts(i)%text)
          end do
