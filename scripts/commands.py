@@ -17,7 +17,8 @@ import sys
 
 from mfv.commands import main
 
-sys.exit(main())
+if __name__ == "__main__":  # not in the processes of a study, which import this file
+    sys.exit(main())
 """
 
 

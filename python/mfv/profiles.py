@@ -88,6 +88,8 @@ def read(
         x, height, x_unit, height_unit = tables.read_trace(path, heights_alone=spacing is not None)
     except tables.Ambiguous as fault:
         raise input_error(f"{fault}; or give spacing in {unit} for heights") from None
+    except tables.Unordered as fault:
+        raise input_error(str(fault)) from None
     except MfvError as fault:
         x, height, x_unit = _of_instrument(path, fault, line, along, channel, notes)
         height_unit = x_unit

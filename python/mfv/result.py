@@ -371,20 +371,24 @@ def _groups(file: h5py.File) -> dict[str, dict[str, Field]]:
     groups: dict[str, dict[str, Field]] = {}
 
     def add(group: h5py.Group) -> None:
-        path = group.name.strip("/")
-        for name, item in group.items():
+        path, items = group.name.strip("/"), dict(group.items())
+        scales = {item.id: name for name, item in items.items() if isinstance(item, h5py.Dataset) and item.is_scale}
+        for name, item in items.items():
             if isinstance(item, h5py.Group):
                 add(item)
-            elif (path in COORDINATES and name in COORDINATES[path]) or path.startswith(STRESS) or not item.is_scale:
-                groups.setdefault(path, {})[name] = _field(item)
+            elif (path in COORDINATES and name in COORDINATES[path]) or path.startswith(STRESS) or item.id not in scales:
+                groups.setdefault(path, {})[name] = _field(name, item, scales)
 
     add(file)
     return groups
 
 
-def _field(dataset: h5py.Dataset) -> Field:
-    name = dataset.name.rsplit("/", 1)[1]
-    dimensions = (name,) if dataset.is_scale else tuple(d[0].name.rsplit("/", 1)[1] for d in dataset.dims if len(d) > 0)
+def _field(name: str, dataset: h5py.Dataset, scales: Mapping[h5py.h5d.DatasetID, str]) -> Field:
+    """A dataset by its name, with the names of the dimension `scales` of its group: HDF5 searches the whole file for the name of one."""
+    attached = [d[0] for d in dataset.dims if len(d) > 0]
+    dimensions = tuple(scales.get(scale.id) or scale.name.rsplit("/", 1)[1] for scale in attached)
+    if dataset.id in scales:
+        dimensions = (name,)
     unit, description = (str(dataset.attrs.get(attribute, "")) for attribute in ("units", "long_name"))
     return Field(_values_of(dataset), unit, description, dimensions)
 

@@ -272,12 +272,16 @@ class Ambiguous(MfvError):
     """A text whose rows have two readings."""
 
 
+class Unordered(MfvError):
+    """A text with positions that turn or do not change."""
+
+
 def read_trace(path: str | os.PathLike[str], heights_alone: bool = False) -> Trace:
     """The columns x and height, or heights alone, of a text file; a first column of row numbers is dropped.
 
     Rows such as 0,5 are x and height, or heights with a decimal comma, by what the line above them names, x,z or z; without names they
-    are heights if these are `heights_alone` or if x would turn. Raises OSError, InputError with line and what would be right; Ambiguous
-    for such rows that may be both.
+    are heights if these are `heights_alone` or if x would turn. Raises OSError, InputError with line and what would be right; Unordered
+    for positions that turn; Ambiguous for such rows that may be both.
     """
     name, lines = os.fspath(path), _lines(path)
     sample = [line for line in lines[:_SAMPLE] if not _is_comment(line)]
@@ -304,7 +308,9 @@ def read_trace(path: str | os.PathLike[str], heights_alone: bool = False) -> Tra
                 "name the columns in the line above, x,z or z, or separate x and height by a semicolon",
             )
     if fault is not None:
-        raise input_error(f"{name}:{numbers[fault]}: x must increase from line to line, or decrease")
+        raise Unordered(
+            None, f"{name}:{numbers[fault]}: x must increase from line to line, or decrease; sort the rows, one for each x"
+        )
     units = _units_of_trace(lines[: start - 1], columns)
     if table.shape[1] == 1:
         return Trace(None, table[:, 0], "", units[-1])

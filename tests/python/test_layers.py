@@ -16,7 +16,7 @@ from scipy.linalg import expm
 from test_anisotropic import near_field, random_material, reduced, steps, turned
 
 import mfv
-from mfv import Body, Friction, Layer, Mesh, Scene, Step
+from mfv import Body, Friction, Layer, Mesh, Output, Scene, Step
 
 Numbers = NDArray[np.float64]
 ALLOY = {"youngs_modulus": 70e3, "poisson_ratio": 0.33}
@@ -384,3 +384,24 @@ def test_wrong_layers_are_refused(layers: str, keys: str, message: str) -> None:
     )
     with pytest.raises(mfv.MfvError, match=re.escape(message)):
         mfv.run(Scene.from_text(text))
+
+
+@pytest.mark.parametrize("thickness, resolved", [(0.003, False), (0.03, True)])
+def test_edges_of_thin_coatings(thickness: float, resolved: bool) -> None:
+    """Within the last few thicknesses from an edge of the contact tractions do not follow the square root by which edges are found."""
+
+    def half_width(nodes: int) -> mfv.Result:
+        coated = Body.half_plane(youngs_modulus=70e3, poisson_ratio=0.33)
+        coated.layers = [Layer(thickness=thickness, youngs_modulus=300e3, poisson_ratio=0.2)]
+        pad = Body.disk(10.0, youngs_modulus=210e3, poisson_ratio=0.3)
+        steps = [Step(normal_force=50.0, friction=False)]
+        return Scene(coated, pad, mesh=Mesh(nodes=nodes), output=Output(error_estimate=True), steps=steps).run(check=True)
+
+    coarse, fine = half_width(101), half_width(801)
+    error = abs(coarse.summary.contact_half_width - fine.summary.contact_half_width)
+    assert ("contact_half_width" not in coarse.attributes["unresolved"].split()) == resolved
+    assert np.isfinite(coarse.error_estimate.contact_half_width_error) == resolved
+    if resolved:
+        assert error < 2.0e-4 * fine.summary.contact_half_width
+    else:
+        assert error > 0.01 * fine.summary.contact_half_width

@@ -235,3 +235,12 @@ def test_a_profile_has_two_points_at_a_distance(tmp_path: Path) -> None:
             profiles.read(tmp_path / "point.csv", **options)
     with pytest.raises(errors.InputError, match="spacing: must be a positive length in mm, not -1.0"):
         profiles.read(tmp_path / "heights.csv", spacing=-1.0)
+
+
+@pytest.mark.parametrize("rows", ["0,0\n2,1\n1,4\n", "0 0\n1 1\n1 2\n2 4\n"])
+def test_a_text_with_positions_out_of_order_is_refused(tmp_path: Path, rows: str) -> None:
+    """Also where SurfaceTopography, which does not sort it, would read it."""
+    path = tmp_path / "trace.csv"
+    path.write_text("x,z\n" + rows)
+    with pytest.raises(errors.InputError, match="trace.csv:4: x must increase from line to line, or decrease; sort the rows"):
+        profiles.read(path)

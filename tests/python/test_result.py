@@ -325,3 +325,15 @@ def test_panels_are_all_tested_here() -> None:
         if not name.startswith("_") and function.__module__ == "mfv.plot" and "ax" in inspect.signature(function).parameters
     }
     assert taking_axes == {*PANELS, "stress_contours", "parameter_contours"}
+
+
+def test_dimensions_of_many_states_are_read_without_a_search(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """HDF5 searches the file for the name of a scale, so that reading took the square of the number of states."""
+    import h5py
+
+    path = tmp_path / "pressed.h5"
+    cylinder(*(mfv.Step(normal_force=1.0e-3 * part) for part in (0.2, 0.4, 0.6, 0.8, 1.0))).run(check=True, output=path)
+    monkeypatch.setattr(h5py.Dataset, "name", property(lambda self: pytest.fail("a name was searched")))
+    read = mfv.read(path)
+    assert len(read.steps) == 5 and read.steps[2].to_xarray()["pressure"].dims == ("x",)
+    assert read.history.to_xarray()["shift"].dims == ("record",)

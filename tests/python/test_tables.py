@@ -116,7 +116,7 @@ def test_heights_alone(tmp_path: Path) -> None:
 def test_a_text_is_refused_by_both_with_its_line(tmp_path: Path, content: bytes, message: str) -> None:
     path = tmp_path / "trace.txt"
     path.write_bytes(content)
-    with pytest.raises(errors.InputError, match=re.escape(message)):
+    with pytest.raises(errors.MfvError, match=re.escape(message)):
         tables.read_trace(path)
     with pytest.raises(errors.InputError, match=re.escape(message)) as raised:
         scene(Body(shape="profile", file=path, rigid=True)).contact()
@@ -196,7 +196,7 @@ def test_whole_numbers_and_commas_are_read_by_the_names_above(tmp_path: Path, he
 def test_two_names_above_refuse_x_that_turns(tmp_path: Path) -> None:
     path = tmp_path / "trace.txt"
     path.write_text("x,z\n3,5\n1,2\n2,2\n")
-    with pytest.raises(errors.InputError, match="trace.txt:4: x must increase from line to line, or decrease"):
+    with pytest.raises(errors.MfvError, match="trace.txt:4: x must increase from line to line, or decrease"):
         tables.read_trace(path)
 
 

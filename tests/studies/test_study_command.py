@@ -5,10 +5,13 @@ import csv
 import random
 import re
 import resource
+import runpy
 import signal
 import sqlite3
 import subprocess
+import sys
 import time
+from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
 import h5py
@@ -312,6 +315,29 @@ def test_killed_at_random_moments(tmp_path):
     table = read(tmp_path / "study.nc")
     assert table.drop_attrs(deep=False).identical(undisturbed.drop_attrs(deep=False)) and table.attrs == undisturbed.attrs
     assert before > 0 and cases_kept(tmp_path) == cases
+
+
+def test_processes_of_the_command_of_the_source_tree(tmp_path):
+    """Processes import the file of the command, which must not run again there."""
+    long_study(tmp_path)
+    launcher = runpy.run_path(str(ROOT / "scripts" / "commands.py"))["LAUNCHER"]
+    (tmp_path / "mfv").write_text(launcher.format(python=sys.executable))
+    words = ["sh", "./mfv", "study", "study.nml", "--executor", "processes", "--workers", "2"]
+    done = subprocess.run(words, cwd=tmp_path, env=environment(), capture_output=True, text=True, timeout=100)
+    assert done.returncode == COMPLETE, done.stderr
+
+
+def test_a_process_that_has_ended_is_reported(tmp_path, monkeypatch, capsys):
+    def ended(*_, **__):
+        raise BrokenProcessPool("terminated abruptly")
+
+    long_study(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("mfv.studies.executors.solve_all", ended)
+    assert main(["study", "study.nml", "--executor", "processes"]) == INPUT
+    assert capsys.readouterr().err.startswith(
+        "mfv: a process that solved cases has ended (out of memory, or killed?); solved cases"
+    )
 
 
 @pytest.mark.parametrize(("executor", "number"), [("threads", signal.SIGINT), ("processes", signal.SIGTERM)])

@@ -6,6 +6,7 @@ import argparse
 import os
 import sys
 import traceback
+from concurrent.futures import BrokenExecutor
 
 from .. import __version__
 from .._packages import how_to_install
@@ -73,6 +74,13 @@ def main(arguments: list[str] | None = None) -> int:
     except (MfvError, OSError, ValueError) as error:
         print(f"mfv: {_with_file(message_of(error), options)}", file=sys.stderr)
         _give_up_output()
+        return UNUSABLE
+    except BrokenExecutor:
+        print(
+            "mfv: a process that solved cases has ended (out of memory, or killed?); solved cases are saved: repeat the command to "
+            "continue, with fewer --workers if memory is short",
+            file=sys.stderr,
+        )
         return UNUSABLE
     except ModuleNotFoundError as error:
         text, package = str(error), str(error.name)
