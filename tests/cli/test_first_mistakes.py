@@ -87,3 +87,19 @@ def test_heights_in_another_unit_are_suspected(scale: str, is_named: bool, tmp_p
     assert any("check height_scale of the upper body, whose heights change by" in line for line in warnings) == is_named, (
         done.stdout
     )
+
+
+@pytest.mark.parametrize(
+    "heading", ["x [mm],z [um]", "Position [mm],Height [\N{MICRO SIGN}m]", '"x (mm)","z (\N{GREEK SMALL LETTER MU}m)"']
+)
+def test_a_heading_with_different_units_needs_a_scale(heading: str, tmp_path: Path) -> None:
+    x = np.linspace(-1.0, 1.0, 41)
+    rows = "\n".join(f"{a:.3f},{a * a:.5f}" for a in x)
+    (tmp_path / "scan.csv").write_text(f"{heading}\n{rows}\n", encoding="utf-8")
+    case = PAD.splitlines()[0] + "\n&body shape='profile', file='scan.csv'{}, rigid=.true. /\n&step normal_force=100 /\n"
+    done = run(tmp_path, case.format(""))
+    assert done.returncode == 2
+    assert "by its heading positions are in mm and heights in um; give height_scale=0.001 if lengths are in mm" in done.stderr
+    assert run(tmp_path, case.format(", height_scale=1e-3")).returncode == 0
+    (tmp_path / "scan.csv").write_text(f"x [mm],z [mm]\n{rows}\n")
+    assert run(tmp_path, case.format("")).returncode == 0

@@ -6,6 +6,7 @@ module mfv_profile_file
    use mfv_kinds, only: wp
    use mfv_profile, only: profile_of_points, trace_type
    use mfv_status, only: MFV_INPUT_ERROR
+   use mfv_strings, only: string_type, to_text
    use mfv_table_file, only: read_table
    implicit none
    private
@@ -23,12 +24,14 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(case_data_type), intent(in), optional :: data
       real(wp), allocatable :: table(:, :), x(:)
+      type(string_type), allocatable :: heading(:)
       integer :: i
 
       if (present(data)) then
          call data%read_columns(path, 'x height', table, error, with_gaps=.true.)
       else
-         call read_table(path, 'x and height', 2, .true., table, error, is_trace=.true.)
+         call read_table(path, 'x and height', 2, .true., table, error, is_trace=.true., heading=heading)
+         if (.not. allocated(error)) call check_units(path, heading, trace, error)
          if (allocated(error)) then
             if (index(error%message, ': not a text file') > 0) error%message = error%message// &
                                                             '; write one: mfv profile '//path//' -o '//path(:name_end(path))//'.txt'
@@ -44,6 +47,46 @@ contains
       call profile_of_points(x, table(size(table, 1), :), trace, geometry, error)
       if (allocated(error)) error%message = path//': '//error%message
    end subroutine read_profile
+
+   !> Error if by its heading a file has positions and heights in different units of length, and no scale makes them the same.
+   subroutine check_units(path, heading, trace, error)
+      character(*), intent(in) :: path
+      type(string_type), intent(in) :: heading(:)
+      type(trace_type), intent(in) :: trace
+      type(error_type), allocatable, intent(out) :: error
+      !> Metres per unit.
+      real(wp), parameter :: metres(5) = [1.0_wp, 1.0e-2_wp, 1.0e-3_wp, 1.0e-6_wp, 1.0e-9_wp]
+      character(len=2), parameter :: units(5) = [character(len=2) :: 'm', 'cm', 'mm', 'um', 'nm']
+      integer :: x, height
+
+      if (size(heading) < 2 .or. trace%has_spacing .or. abs(abs(trace%height_scale) - 1.0_wp) > 0.0_wp) return
+      x = findloc(units, unit_in(heading(size(heading) - 1)%text), dim=1)
+      height = findloc(units, unit_in(heading(size(heading))%text), dim=1)
+      if (x == 0 .or. height == 0 .or. x == height) return
+      call set_error(error, MFV_INPUT_ERROR, path//': by its heading positions are in '//trim(units(x))//' and heights in '// &
+                     trim(units(height))//'; give height_scale='//to_text(metres(height)/metres(x))//' if lengths are in '// &
+                     trim(units(x))//' (negative for heights that are positive outwards), or position_scale and height_scale')
+   end subroutine check_units
+
+   !> The unit of length in brackets at the end of the name of a column, um for micrometres in any writing; blank for none.
+   pure character(len=2) function unit_in(name)
+      character(*), intent(in) :: name
+      !> The sign for micro and the Greek letter.
+      character(len=2), parameter :: micro = char(194)//char(181), mu = char(206)//char(188)
+      integer :: opening, closing
+
+      unit_in = ''
+      opening = scan(name, '[(', back=.true.)
+      closing = scan(name, '])', back=.true.)
+      if (opening == 0 .or. closing <= opening + 1 .or. closing > opening + 4) return
+      associate (unit => name(opening + 1:closing - 1))
+         if (any(unit == [character(len=3) :: 'um', micro//'m', mu//'m', char(181)//'m'])) then
+            unit_in = 'um'
+         else if (len(unit) <= 2) then
+            unit_in = unit
+         end if
+      end associate
+   end function unit_in
 
    !> The last character of a path before the suffix of its name, unless that is .txt.
    pure integer function name_end(path)

@@ -49,27 +49,34 @@ contains
    !> Columns of numbers from a text file, without comments and lines of text before the numbers; a first column of row numbers,
    !> followed by a column that increases, is dropped. `names`: of the columns, for messages; `columns`: their number; `increasing`:
    !> whether the first must increase; rows in which it decreases are reversed. `table`: shape (columns, rows).
-   !> `is_trace`: cells may have no value, NaN then, and the last column may be alone: shape (1, rows).
+   !> `is_trace`: cells may have no value, NaN then, and the last column may be alone: shape (1, rows). `heading`: names of columns in
+   !> the file, none without.
    !> Error MFV_INPUT_ERROR with line, column and what would be right.
-   subroutine read_table(path, names, columns, increasing, table, error, is_trace)
+   subroutine read_table(path, names, columns, increasing, table, error, is_trace, heading)
       character(*), intent(in) :: path, names
       integer, intent(in) :: columns
       logical, intent(in) :: increasing
       real(wp), allocatable, intent(out) :: table(:, :)
       type(error_type), allocatable, intent(out) :: error
       logical, intent(in), optional :: is_trace
-      type(text_type) :: text
+      type(string_type), allocatable, intent(out), optional :: heading(:)
+      type(text_type) :: text, copy
       integer, allocatable :: rows(:)
       real(wp), allocatable :: alone(:, :)
       type(error_type), allocatable :: fault
       logical :: with_gaps, plain
-      integer :: found
+      integer :: found, header
 
       with_gaps = .false.
       if (present(is_trace)) with_gaps = is_trace
       call read_lines(path, text, error)
       if (allocated(error)) return
       text%names = names
+      if (present(heading)) then
+         copy = text
+         call find_header(copy, header, heading)
+         if (.not. allocated(heading)) allocate (heading(0))
+      end if
       found = columns
       plain = starts_with_row(text, columns)
       if (plain) then
