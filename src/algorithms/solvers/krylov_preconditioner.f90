@@ -2,10 +2,10 @@
 !>
 !> The surface of every elastic body responds to nearby tractions like a half-plane, by the logarithm of the distance. On
 !> consecutive nodes this, or the kernel of layers, is a Toeplitz matrix with a known exact inverse (mfv_toeplitz_inverse): on
-!> half-planes and layers the iteration then only resolves the coupling of pressure and shear, whose strength does not depend on the
-!> mesh. On other sets of nodes, and where nodes are held by bristles (softness c > 0, mfv_krylov_system), which need 1/(C_ut + c), it is an approximate sparse inverse
-!> (mfv_sparse_inverse). Nodes whose friction decreases with slip (c < 0) are treated as independent: where the bodies can unload as
-!> fast as friction decreases, |c| dominates C_ut + c.
+!> half-planes and layers the iteration then only resolves the coupling of pressure and shear, whose strength does not depend on
+!> the mesh. On other sets of nodes, and where nodes are held by bristles (softness c > 0, mfv_krylov_system), which need 1/(C_ut +
+!> c), it is an approximate sparse inverse (mfv_sparse_inverse). Nodes whose friction decreases with slip (c < 0) are treated as
+!> independent: where the bodies can unload as fast as friction decreases, |c| dominates C_ut + c.
 module mfv_krylov_preconditioner
    use mfv_compliance, only: block_ut, block_wp, compliance_type
    use mfv_half_plane, only: log_kernel

@@ -4,10 +4,10 @@
 !> first node beyond the zone; next to the edge c the slip differs from S by (x - c)^(5/2) only, so that S(E) is about the slip of E
 !> at the end. Near the edge c0 at the start, the slip since the start is the integral of (x - c)^(3/2) over the way of c: S - s0
 !> grows as (x - c0)^(5/2), s0 the slip at the start, even if the edge rests before it moves (then with a part in (x - c0)^(3/2)).
-!> So it is taken where the zone grows within the nearer part of what slipped at the start. Beyond that S is the parabola through E
-!> and two nodes that have held: the outermost one, and one as far further in as E is further out. A contact that begins within the
-!> increment grows in proportion to its shape (exactly so for a power of x, under loads that grow in proportion): there S follows
-!> the gap before the increment. If it has begun in an increment before and still does, S is that parabola everywhere.
+!> So it is taken where the zone grows within the nearer part of what slipped at the start. Beyond that S is the cubic through E and
+!> three nodes that have held: the outermost one, and two at equal distances further in, as far as E is further out. A contact that
+!> begins within the increment grows in proportion to its shape (exactly so for a power of x, under loads that grow in proportion):
+!> there S follows the gap before the increment. If it has begun in an increment before and still does, S is that cubic everywhere.
 !>
 !> S depends on the slip of E, an unknown of the same increment: slip(E) = s + sum of r theta over the slips theta that are assumed
 !> for the outer nodes, r the responses to unit slips. The fronts to the left and to the right of all stick zones are two groups,
@@ -93,10 +93,10 @@ contains
 
       !> A front of the nodes `from` to `to`, between the outermost held node `near` and the node `outer` beyond the zone. `reach`:
       !> from the first to the last held node. Near the edge the slip since the start is a power of the distance, further away S is
-      !> a parabola; in between it is a mean of both, so that statuses do not alternate.
+      !> a cubic; in between it is a mean of both, so that statuses do not alternate.
       subroutine add_front(group, from, to, near, outer, reach)
          integer, intent(in) :: group, from, to, near, outer, reach
-         !> The parts of the slip zone up to which a zone grows by the power, and from which by the parabola.
+         !> The parts of the slip zone up to which a zone grows by the power, and from which by the cubic.
          real(wp), parameter :: near_edge = 0.25_wp, far = 0.75_wp
          real(wp), dimension(from:to) :: base, weight, by_power
          real(wp) :: power, slip(size(gap))
