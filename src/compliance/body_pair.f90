@@ -27,6 +27,7 @@ module mfv_body_pair
       procedure :: resize
       procedure :: entries
       procedure :: products
+      procedure :: displacements
       procedure :: normal_by_shear
       procedure :: tangential_displacements
       procedure :: deforms
@@ -51,7 +52,7 @@ contains
       flexibility = 0.0_wp
       by_shear = 0.0_wp
       self%is_homogeneous = .true.
-      self%is_logarithmic = .true.
+      self%by_distance = .true.
       do i = 1, 2
          if (.not. self%deforms(i)) cycle
          associate (body => self%body(i)%compliance)
@@ -64,7 +65,7 @@ contains
             by_shear = by_shear + body%shear_ratio/body%modulus
             self%kernel_error = max(self%kernel_error, body%kernel_error)
             self%is_homogeneous = self%is_homogeneous .and. body%is_homogeneous
-            self%is_logarithmic = self%is_logarithmic .and. body%is_logarithmic
+            self%by_distance = self%by_distance .and. body%by_distance
          end associate
       end do
       self%modulus = 1.0_wp/flexibility
@@ -149,6 +150,26 @@ contains
          if (.not. self%has_block(block_up)) by_block(:, block_up) = 0.0_wp
       end if
    end subroutine products
+
+   !> See mfv_compliance: of layers by the displacements of the bodies, each in one product.
+   subroutine displacements(self, pressure, shear, normal, tangential)
+      class(body_pair_type), intent(in) :: self
+      real(wp), intent(in) :: pressure(:), shear(:)
+      real(wp), intent(out) :: normal(:), tangential(:)
+      real(wp), dimension(size(pressure)) :: upper_normal, upper_tangential
+      real(wp) :: by_block(size(pressure), 4)
+
+      if (self%is_homogeneous .or. .not. (self%by_distance .and. all(self%has_block))) then
+         call self%products(pressure, shear, by_block)
+         normal = by_block(:, block_wp) + by_block(:, block_wt)
+         tangential = by_block(:, block_ut) + by_block(:, block_up)
+         return
+      end if
+      call self%body_displacements(lower_body, pressure, shear, normal, tangential)
+      call self%body_displacements(upper_body, pressure, shear, upper_normal, upper_tangential)
+      normal = normal + upper_normal
+      tangential = tangential - upper_tangential
+   end subroutine displacements
 
    !> See mfv_compliance.
    subroutine normal_by_shear(self, shear, normal)

@@ -34,8 +34,9 @@ module mfv_compliance
       !> Whether it is the same everywhere along the surface: blocks depend on the distance only, and C_ut is C_wp times
       !> `shear_ratio`, up to a constant. Half-planes in equal intervals.
       logical :: is_homogeneous = .false.
-      !> Whether it is then the logarithm of the distance and a constant: not on a surface that repeats.
-      logical :: is_logarithmic = .false.
+      !> Whether blocks depend on the distance only: half-planes (then as its logarithm, up to a constant) and layers in equal
+      !> intervals, not on a surface that repeats.
+      logical :: by_distance = .false.
       !> C_ut over C_wp next to a load.
       real(wp) :: shear_ratio = 1.0_wp
       !> Estimated error of numerical kernels, over their largest value.
@@ -113,10 +114,9 @@ contains
       class(compliance_type), intent(in) :: self
       real(wp), intent(in) :: pressure(:), shear(:)
       real(wp), intent(out) :: tangential(:)
-      real(wp) :: by_block(size(pressure), 4)
+      real(wp) :: normal(size(pressure))
 
-      call self%products(pressure, shear, by_block)
-      tangential = by_block(:, block_ut) + by_block(:, block_up)
+      call self%displacements(pressure, shear, normal, tangential)
    end subroutine tangential_displacements
 
    !> Constants of the coupling blocks: two bodies with equal signatures do not couple. Zero without coupling; huge by

@@ -76,7 +76,7 @@ contains
       self%cross = 0.5_wp*constants%coupling*interval
       self%nodes = nodes
       self%is_homogeneous = .not. present(ends)
-      self%is_logarithmic = self%is_homogeneous .and. .not. self%period > 0.0_wp
+      self%by_distance = self%is_homogeneous .and. .not. self%period > 0.0_wp
       if (present(ends)) then
          call self%grade(ends, odd=[.false., .true.])
       else

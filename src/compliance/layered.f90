@@ -9,6 +9,7 @@ module mfv_layered
    use mfv_near_field, only: near_field_type
    use mfv_smooth_kernel
    use mfv_toeplitz, only: new_toeplitz, toeplitz_type
+   use mfv_tolerances, only: rounding
    implicit none
    private
    public :: layered_type, new_layered
@@ -21,14 +22,16 @@ module mfv_layered
       real(wp) :: datum = 1.0_wp, mixed_ratio = 0.0_wp
       type(smooth_kernel_type) :: smooth
       !> Equal intervals: the kernels by distance, shape (0:nodes - 1, smooth_kernels), and products with those of w by pressure and
-      !> u by shear, with the mixed, and with the odd one.
+      !> u by shear, with the mixed, with the odd one, and with all but the mixed one.
       real(wp), allocatable :: kernel(:, :)
-      type(toeplitz_type) :: direct, mixed, odd
+      type(toeplitz_type) :: direct, mixed, odd, all
    contains
       procedure :: resize
       procedure :: kernels_at
       procedure :: entries
       procedure :: products
+      procedure :: displacements
+      procedure :: normal_by_shear
       procedure :: signature
    end type layered_type
 
@@ -55,6 +58,7 @@ contains
       self%surface = new_half_plane(constants, 1, interval, datum, coupling, tangential, period=period)
       call self%choose_blocks(coupling, tangential)
       self%nodes = nodes
+      self%by_distance = .not. (present(ends) .or. period > 0.0_wp)
       if (present(ends)) then
          self%smooth = new_smooth_kernel(layers, datum, period, ends(size(ends)) - ends(1))
          self%kernel_error = self%smooth%error
@@ -81,8 +85,12 @@ contains
       do i = 0, nodes - 1
          call self%kernels_at(i*self%interval, self%interval, self%kernel(i, :))
       end do
+      ! Of layers that are not oblique it is round-off.
+      if (maxval(abs(self%kernel(:, mixed_kernel))) <= rounding*maxval(abs(self%kernel(:, normal_kernel)))) &
+         self%kernel(:, mixed_kernel) = 0.0_wp
       self%direct = new_toeplitz(self%kernel(:, normal_kernel), other=self%kernel(:, tangential_kernel))
       self%odd = new_toeplitz(0.0_wp*self%kernel(:, odd_kernel), self%kernel(:, odd_kernel))
+      self%all = new_toeplitz(self%kernel(:, normal_kernel), -self%kernel(:, odd_kernel), self%kernel(:, tangential_kernel))
       if (is_oblique(self)) self%mixed = new_toeplitz(self%kernel(:, mixed_kernel))
       self%block_values = smooth_kernels*nodes
    end subroutine resize
@@ -168,5 +176,36 @@ contains
       if (.not. self%has_block(block_wt)) by_block(:, block_wt) = 0.0_wp
       if (.not. self%has_block(block_up)) by_block(:, block_up) = 0.0_wp
    end subroutine products
+
+   !> See mfv_compliance: with all blocks of a layer that is not oblique in one product.
+   subroutine displacements(self, pressure, shear, normal, tangential)
+      class(layered_type), intent(in) :: self
+      real(wp), intent(in) :: pressure(:), shear(:)
+      real(wp), intent(out) :: normal(:), tangential(:)
+      real(wp) :: by_block(size(pressure), 4)
+
+      if (all(self%has_block) .and. .not. is_oblique(self)) then
+         call self%all%multiply(pressure, normal, shear, tangential)
+      else
+         call self%products(pressure, shear, by_block)
+         normal = by_block(:, block_wp) + by_block(:, block_wt)
+         tangential = by_block(:, block_ut) + by_block(:, block_up)
+      end if
+   end subroutine displacements
+
+   !> See mfv_compliance.
+   subroutine normal_by_shear(self, shear, normal)
+      class(layered_type), intent(in) :: self
+      real(wp), intent(in) :: shear(:)
+      real(wp), intent(out) :: normal(:)
+      real(wp), dimension(size(shear)) :: even, unused
+
+      normal = 0.0_wp
+      if (.not. self%has_block(block_wt)) return
+      call self%odd%multiply_odd(-shear, normal)
+      if (.not. is_oblique(self)) return
+      call self%mixed%multiply(shear, even, 0.0_wp*shear, unused)
+      normal = normal + even
+   end subroutine normal_by_shear
 
 end module mfv_layered

@@ -26,6 +26,7 @@ module mfv_toeplitz
       logical :: coupled = .false.
    contains
       procedure :: multiply
+      procedure :: multiply_odd
    end type toeplitz_type
 
 contains
@@ -120,7 +121,26 @@ contains
       by_x = values(:self%nodes)
    end subroutine multiply_one
 
-   !> The same with the work spaces `values` and `work`, shape (length).
+   !> -B y, of shape (nodes), of a matrix with B only (A and C are zero), by transforms of half the length.
+   subroutine multiply_odd(self, y, by_y)
+      class(toeplitz_type), intent(in) :: self
+      real(wp), intent(in) :: y(:)
+      real(wp), intent(out) :: by_y(:)
+      real(wp) :: values(self%length)
+      complex(wp) :: spectrum(self%length/2 + 1)
+      integer :: k
+
+      values(:self%nodes) = y
+      values(self%nodes + 1:) = 0.0_wp
+      call real_transform(values, spectrum)
+      do k = 1, size(spectrum)
+         spectrum(k) = cmplx(-self%straight(k)*aimag(spectrum(k)), self%straight(k)*real(spectrum(k), wp), wp)
+      end do
+      call back_transform(spectrum, values)
+      by_y = values(:self%nodes)
+   end subroutine multiply_odd
+
+   !> The same as multiply with the work spaces `values` and `work`, shape (length).
    subroutine multiply_in(self, values, work, x, by_x, y, by_y)
       class(toeplitz_type), intent(in) :: self
       complex(wp), intent(inout), contiguous :: values(:), work(:)

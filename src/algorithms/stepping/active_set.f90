@@ -32,8 +32,8 @@ module mfv_active_set
    real(wp), parameter :: intermediate = 1.0e-6_wp
    integer, parameter :: few = 2
    !> Most nodes at fronts by which the statuses that the rates require may differ from those that the state does: where the slip at
-   !> a front is only nearly as assumed, these alternate.
-   integer, parameter :: at_fronts = 4
+   !> a front is only nearly as assumed, these alternate. Or one for this number of nodes that have stuck in the increment.
+   integer, parameter :: at_fronts = 4, stuck_for_one = 4
    !> Most corrections of the slip that is expected of open nodes.
    integer, parameter :: most_looks = 3
 
@@ -60,7 +60,7 @@ contains
       real(wp) :: allowed
       type(contact_state_type) :: consistent
       logical :: possible, by_edges, rough, accurate, is_consistent
-      integer :: solve, first, looks
+      integer :: solve, first, looks, stuck
 
       found = .false.
       allowed = path%system%allowed
@@ -109,8 +109,10 @@ contains
             if (all(wanted == path%state%status)) return
             found = .false.
          end if
-         if (present(held) .and. accurate .and. is_consistent .and. &
-             count(wanted /= path%state%status) <= at_fronts) call keep(path, fields, consistent)
+         if (present(held) .and. accurate .and. is_consistent) then
+            stuck = count(path%state%status == node_stick .and. .not. held)
+            if (count(wanted /= path%state%status) <= max(at_fronts, stuck/stuck_for_one)) call keep(path, fields, consistent)
+         end if
          if (by_edges) call move_edges(path%state%status, wanted, held)
          if (found .and. is_among(wanted, tried(:, :solve))) then
             found = .not. reverses(path, fields, held)
@@ -121,13 +123,13 @@ contains
          call path%set_status(wanted /= path%state%status, wanted)
          path%state%stuck_slip = hold
          if (.not. is_among(wanted, tried(:, first:solve))) cycle
-         if (.not. by_edges .and. allocated(consistent%status)) then
+         if (allocated(consistent%status)) then
             call path%set_status(consistent%status /= path%state%status, consistent%status)
             path%state%stuck_slip = consistent%stuck_slip
             fields = consistent%fields
             found = .not. reverses(path, fields, held)
          end if
-         if (.not. by_edges) return
+         if (found .or. .not. by_edges) return
          by_edges = .false.
          first = solve + 1
       end do

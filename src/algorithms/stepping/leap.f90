@@ -362,7 +362,7 @@ contains
       do
          call add_samples(path, interval, start, chain, found)
          if (.not. found) return
-         call weigh_samples(path, chain)
+         call weigh_samples(path, progress, chain)
          accepted = relative_work_error(path, progress, chain) <= 1.0_wp .and. &
                     (ubound(chain%samples, 1) >= least_samples .or. .not. abs(interval%load(motion_approach)%rate) > 0.0_wp)
          if (accepted .and. shares_work(chain)) &
@@ -413,9 +413,11 @@ contains
    !> The dissipation of a chain by its samples: by slopes, or node by node if that is exact. Its error is taken to be half the
    !> difference to the sum node by node, extrapolated at second order, but at least a sixth of that to the sum itself; twice as
    !> much with two samples; and at least a third of the change from half as many, or from the sum without rates (where the load
-   !> passes a former reversal, rates jump, and the sums converge at second order).
-   subroutine weigh_samples(path, chain)
+   !> passes a former reversal, rates jump, and the sums converge at second order). While a contact grows that has begun in the
+   !> segment, the sum node by node is much worse, since nodes touch: there it is taken to be this change, three times as much.
+   subroutine weigh_samples(path, progress, chain)
       class(contact_path_type), intent(in) :: path
+      type(leap_progress_type), intent(in) :: progress
       type(chain_type), intent(inout) :: chain
       real(wp) :: by_nodes, coarse, error, few, coarse_works(motion_count)
 
@@ -425,9 +427,12 @@ contains
       by_nodes = chain%node_wise + (chain%node_wise - chain%coarse_node_wise)/3.0_wp
       chain%work = chain%by_slopes
       few = merge(2.0_wp, 1.0_wp, ubound(chain%samples, 1) == 2)
-      chain%work_error = max(few*abs(chain%by_slopes - by_nodes)/2.0_wp, &
-                             few*abs(chain%by_slopes - chain%node_wise)/6.0_wp, error)
-      chain%work_error = max(chain%work_error, abs(chain%by_slopes - coarse)/3.0_wp)
+      if (has_begun(progress)) then
+         chain%work_error = max(abs(chain%by_slopes - coarse), error)
+      else
+         chain%work_error = max(few*abs(chain%by_slopes - by_nodes)/2.0_wp, &
+                                few*abs(chain%by_slopes - chain%node_wise)/6.0_wp, error, abs(chain%by_slopes - coarse)/3.0_wp)
+      end if
       call prefer_node_wise(chain)
       if (ubound(chain%samples, 1) > chain%increments) &
          chain%motion_work_error = maxval(abs(chain%motion_work - coarse_works))/3.0_wp + abs(chain%work - chain%by_slopes)
@@ -481,7 +486,7 @@ contains
    end subroutine finish_chain
 
    !> Whether a chain meets the tolerance; if not, the number of increments of the next one, 0: too many. (In rough contacts errors
-   !> fall irregularly: twice as many.)
+   !> fall irregularly, and with fronts samples give the dissipation: twice as many.)
    subroutine choose(path, progress, chain, accepted, increments)
       class(contact_path_type), intent(in) :: path
       type(leap_progress_type), intent(in) :: progress
@@ -495,8 +500,10 @@ contains
       accepted = max(by_tractions, by_work) <= 1.0_wp
       increments = 0
       if (accepted) return
-      wanted = min(max(2.0_wp, merge(1.0_wp, by_tractions, chain%fronts), by_work**merge(0.25_wp, 0.5_wp, chain%begins)), &
-                   merge(2.0_wp, real(most_increments, wp), chain%rough))
+      wanted = 2.0_wp
+      if (.not. chain%rough .and. (chain%begins .or. .not. chain%fronts)) &
+         wanted = min(max(2.0_wp, merge(1.0_wp, by_tractions, chain%fronts), by_work**merge(0.25_wp, 0.5_wp, chain%begins)), &
+                      real(most_increments, wp))
       increments = chain%increments*2**ceiling(log(wanted)/log(2.0_wp) - 1.0e-6_wp)
       if ((has_begun(progress) .and. by_tractions > 1.0_wp .and. increments > most_growing .and. .not. chain%rough) .or. &
           (chain%begins .and. by_tractions > most_increments/chain%increments)) increments = 0

@@ -4,10 +4,10 @@
 !> first node beyond the zone; next to the edge c the slip differs from S by (x - c)^(5/2) only, so that S(E) is about the slip of E
 !> at the end. Near the edge c0 at the start, the slip since the start is the integral of (x - c)^(3/2) over the way of c: S - s0
 !> grows as (x - c0)^(5/2), s0 the slip at the start, even if the edge rests before it moves (then with a part in (x - c0)^(3/2)).
-!> So it is taken where the zone grows within the nearer part of what slipped at the start. Beyond that S is the parabola through E
-!> and two nodes that have held: the outermost one, and one as far further in as E is further out. A contact that begins within the
-!> increment grows in proportion to its shape (exactly so for a power of x, under loads that grow in proportion): there S follows
-!> the gap before the increment. If it has begun in an increment before and still does, S is that parabola everywhere.
+!> So it is taken where the zone grows within the nearer part of what slipped at the start. Beyond that S is the cubic through E and
+!> three nodes that have held: the outermost one, and two at equal distances further in, as far as E is further out. A contact that
+!> begins within the increment grows in proportion to its shape (exactly so for a power of x, under loads that grow in proportion):
+!> there S follows the gap before the increment. If it has begun in an increment before and still does, S is that cubic everywhere.
 !>
 !> S depends on the slip of E, an unknown of the same increment: slip(E) = s + sum of r theta over the slips theta that are assumed
 !> for the outer nodes, r the responses to unit slips. The fronts to the left and to the right of all stick zones are two groups,
@@ -93,14 +93,14 @@ contains
 
       !> A front of the nodes `from` to `to`, between the outermost held node `near` and the node `outer` beyond the zone. `reach`:
       !> from the first to the last held node. Near the edge the slip since the start is a power of the distance, further away S is
-      !> a parabola; in between it is a mean of both, so that statuses do not alternate.
+      !> a cubic; in between it is a mean of both, so that statuses do not alternate.
       subroutine add_front(group, from, to, near, outer, reach)
          integer, intent(in) :: group, from, to, near, outer, reach
-         !> The parts of the slip zone up to which a zone grows by the power, and from which by the parabola.
+         !> The parts of the slip zone up to which a zone grows by the power, and from which by the cubic.
          real(wp), parameter :: near_edge = 0.25_wp, far = 0.75_wp
          real(wp), dimension(from:to) :: base, weight, by_power
          real(wp) :: power, slip(size(gap))
-         integer :: outwards, width
+         integer :: outwards, width, step, i
 
          outwards = sign(1, outer - near)
          width = 0
@@ -111,7 +111,8 @@ contains
          power = min(max((far*width - abs(outer - near))/((far - near_edge)*max(width, 1)), 0.0_wp), 1.0_wp)
          if (in_proportion) power = 0.0_wp
          slip = start%slip()
-         call find_parabola(from, to, outer, near, near - min(abs(outer - near), reach - reach/2)*outwards, base, weight)
+         step = min(abs(outer - near), max((reach - reach/2)/2, 1))
+         call interpolate(from, to, outer, near - outwards*step*[(i, i=0, min(2, reach/step))], base, weight)
          by_power = powers(from, to, near + 0.5_wp*outwards, outer)
          call add_nodes(group, from, to, outer)
          fronts%weight(from:to) = (1.0_wp - power)*weight + power*by_power
@@ -129,21 +130,23 @@ contains
          powers = powers**2*sqrt(powers)
       end function powers
 
-      !> The slip base + weight*slip(outer) of the nodes `from` to `to` by the parabola through `outer` and the held nodes `near`
-      !> and `far`.
-      pure subroutine find_parabola(from, to, outer, near, far, base, weight)
-         integer, intent(in) :: from, to, outer, near, far
+      !> The slip base + weight*slip(outer) of the nodes `from` to `to` by the polynomial through `outer` and `held` nodes.
+      pure subroutine interpolate(from, to, outer, nodes, base, weight)
+         integer, intent(in) :: from, to, outer, nodes(:)
          real(wp), intent(out) :: base(from:to), weight(from:to)
-         real(wp) :: x
-         integer :: i
+         integer :: i, j
 
+         base = 0.0_wp
          do i = from, to
-            x = real(i, wp)
-            weight(i) = (x - near)*(x - far)/real((outer - near)*(outer - far), wp)
-            base(i) = hold(near)*(x - outer)*(x - far)/real((near - outer)*(near - far), wp) &
-                      + hold(far)*(x - outer)*(x - near)/real((far - outer)*(far - near), wp)
+            weight(i) = product(real(i - nodes, wp)/real(outer - nodes, wp))
+            do j = 1, size(nodes)
+               associate (others => pack(nodes, nodes /= nodes(j)))
+                  base(i) = base(i) + hold(nodes(j))*real(i - outer, wp)/real(nodes(j) - outer, wp) &
+                            *product(real(i - others, wp)/real(nodes(j) - others, wp))
+               end associate
+            end do
          end do
-      end subroutine find_parabola
+      end subroutine interpolate
 
       !> A front of the nodes `from` to `to`, and the node beyond it.
       subroutine add_nodes(group, from, to, outer)
