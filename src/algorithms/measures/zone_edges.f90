@@ -833,7 +833,8 @@ contains
          error = error_if_unknown
          call find_solved_distance(samples%traction, samples%power, 0, distance, solved)
          call find_solved_distance(samples%traction, samples%power, 1, farther, found)
-         if (solved .and. found .and. distance < farthest) &
+         solved = solved .and. distance < farthest
+         if (solved .and. found) &
             error = min(max(least_error, of_difference*max(distance, least_distance)*abs(farther - distance)), error_if_unknown)
       end if
       if (.not. solved) distance = distance_to_zero(samples, .false.)
