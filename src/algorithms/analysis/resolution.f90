@@ -505,8 +505,8 @@ contains
       end subroutine add
    end subroutine check_slip_zones
 
-   !> Whether the shear at the outermost `node` of a contact causes tension beyond it, on the left (`side` -1) or right (1), in a body
-   !> of which stresses are known: in that on which it points into the contact.
+   !> Whether the shear at the outermost `node` of a contact causes tension beyond it, on the left (`side` -1) or right (1), in a
+   !> body of which stresses are known: in that on which it points into the contact.
    logical function causes_tension(simulation, node, side)
       type(simulation_type), intent(in) :: simulation
       integer, intent(in) :: node, side
