@@ -492,8 +492,7 @@ contains
          end if
       end subroutine add_zones
 
-      !> A slip zone at an edge with too few nodes, or none, although the widest one is resolved. A traction that points from the
-      !> edge into the contact causes tension outside.
+      !> A slip zone at an edge with too few nodes, or none, although the widest one is resolved.
       subroutine add_edge(side)
          integer, intent(in) :: side
          real(wp) :: hidden
@@ -505,7 +504,7 @@ contains
             if (simulation%slip%nodes_now > 0) hidden = hidden_width_at_edge(model, state, side)
             edge = findloc(in_contact(state%status), .true., dim=1, back=side > 0)
             if (zone > 0 .and. zone < resolved_nodes) then
-              if (merge(has_interior(model%scene%lower), has_interior(model%scene%upper), side*state%fields%shear(edge) < 0.0_wp)) &
+               if (causes_tension(simulation, edge, side)) &
                   call add(adjustl(tensions_at_end(simulation)), zone, zone*model%width(edge))
             else if (hidden > 0.0_wp) then
                call add('stick_ratio'//tensions_at_end(simulation), 0, hidden)
@@ -525,6 +524,17 @@ contains
       end subroutine add
    end subroutine check_slip_zones
 
+   !> Whether the shear at the outermost `node` of a contact causes tension beyond it, on the left (`side` -1) or right (1), in a
+   !> body of which stresses are known: in that on which it points into the contact.
+   logical function causes_tension(simulation, node, side)
+      type(simulation_type), intent(in) :: simulation
+      integer, intent(in) :: node, side
+
+      associate (scene => simulation%contact%model%scene, shear => simulation%contact%state%fields%shear(node))
+         causes_tension = merge(has_interior(scene%lower), has_interior(scene%upper), side*shear < 0.0_wp)
+      end associate
+   end function causes_tension
+
    !> Whether the mesh of a simulation could be refined at edges.
    logical function can_refine(simulation)
       type(simulation_type), intent(in) :: simulation
@@ -542,6 +552,7 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
       real(wp), parameter :: least_fall = 0.1_wp
+      character(len=96) :: names
       character(:), allocatable :: remedy
       type(zone_type), allocatable :: zones(:)
       integer :: node, side, distance, inner(0:2), i
@@ -572,7 +583,9 @@ contains
             associate (shear => abs(state%fields%shear(inner)))
                if (maxval(shear(:2) - shear(2:)) <= least_fall*shear(1)) cycle
             end associate
-            call add_unresolved(unresolved, 'peak_shear largest_shear', 'the largest shear is in the outermost interval of a '// &
+            names = 'peak_shear largest_shear'
+            if (causes_tension(simulation, node, side)) names = trim(names)//largest_tensions(simulation)
+            call add_unresolved(unresolved, trim(names), 'the largest shear is in the outermost interval of a '// &
                                 'contact, near x = '//to_text(model%x(node), 4), remedy)
             return
          end do
@@ -715,6 +728,7 @@ contains
    end subroutine check_rolling
 
    !> Wear mostly by cycles that change the pressures too much: the shape, and with it the tractions, are then as uncertain as it.
+   !> Nothing worn by a changing shear, which always makes the edges of a contact slip: wear widens these zones from cycle to cycle.
    !> And a worn part that ends within few intervals at a large pressure.
    subroutine check_worn_shape(simulation, unresolved)
       type(simulation_type), intent(in) :: simulation
@@ -727,6 +741,11 @@ contains
             call add_unresolved(unresolved, 'peak_pressure peak_shear stick_ratio extremes worn_area wear_depth'// &
                                 tensions(simulation), 'most of the wear is from cycles that each change the pressures by '// &
                                 'much', 'use a smaller coefficient and more cycles')
+         if (simulation%cycles(simulation%cycle_count)%is_sheared() .and. .not. any(state%worn > 0.0_wp)) &
+            call add_unresolved(unresolved, 'peak_pressure peak_shear stick_ratio extremes dissipation cycle_dissipation '// &
+                                'worn_area wear_depth left_corner_intensity right_corner_intensity'//tensions(simulation), &
+                                'no node slips in a cycle: what slips, and wears, at the edges is narrower than the mesh', &
+                                'use more nodes')
          if (pressure_at_worn_kink(model, state) > sharp*maxval(state%fields%pressure)) &
             call add_unresolved(unresolved, 'peak_pressure peak_shear stick_ratio_reversal stick_ratio_return extremes'// &
                                 tensions(simulation), 'the worn part of the surface ends within few intervals where the '// &

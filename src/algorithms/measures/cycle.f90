@@ -67,7 +67,7 @@ module mfv_cycle
       procedure :: walks
       procedure :: force_amplitude
       procedure :: shift_amplitude
-      procedure, private :: is_sheared
+      procedure :: is_sheared
       procedure, private :: only_sheared
       procedure :: secant_stiffness
       procedure :: loss_factor
