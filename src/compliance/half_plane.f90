@@ -232,25 +232,23 @@ contains
       class(half_plane_type), intent(in) :: self
       real(wp), intent(in) :: cross, traction(:)
       real(wp), intent(out) :: displacement(:)
-      real(wp) :: left, right, moment, factor
+      real(wp) :: left, right, moment, factor, on_right(size(traction))
       integer :: i, n
 
       n = size(traction)
       left = 0.0_wp
+      right = 0.0_wp
+      moment = 0.0_wp
+      ! The three sums side by side: each waits for its own last addition only.
       do i = 1, n
          displacement(i) = cross*left
          left = left + traction(i)
-      end do
-      right = 0.0_wp
-      do i = n, 1, -1
-         displacement(i) = displacement(i) - cross*right
-         right = right + traction(i)
-      end do
-      if (.not. self%period > 0.0_wp) return
-      moment = 0.0_wp
-      do i = 1, n
+         on_right(n + 1 - i) = right
+         right = right + traction(n + 1 - i)
          moment = moment + i*traction(i)
       end do
+      displacement = displacement - cross*on_right
+      if (.not. self%period > 0.0_wp) return
       factor = 2.0_wp*cross*self%interval/self%period
       do i = 1, n
          displacement(i) = displacement(i) - factor*(i*right - moment)

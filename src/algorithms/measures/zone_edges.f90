@@ -236,11 +236,13 @@ contains
       type(zone_type), allocatable, intent(out) :: zones(:)
       !> A single node at its limit is left to find_stick_edge.
       integer, parameter :: fewest = 2
-      logical, dimension(size(state%status)) :: below
+      logical :: below(patch%first:patch%last)
       integer :: i, first, last
       logical :: trimmed(2)
 
-      below = abs(state%fields%shear) < (1.0_wp - significant)*model%static_friction*state%fields%pressure
+      associate (f => patch%first, l => patch%last)
+         below = abs(state%fields%shear(f:l)) < (1.0_wp - significant)*model%static_friction(f:l)*state%fields%pressure(f:l)
+      end associate
       zones = patch%stick
       do i = 1, size(zones)
          associate (zone => zones(i))

@@ -219,7 +219,8 @@ contains
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: interval
       type(leap_progress_type), intent(in) :: progress
-      logical :: contact(size(path%state%status))
+      logical, dimension(size(path%state%status)) :: contact, valley
+      real(wp) :: gap(size(contact))
 
       few = is_coupled(path)
       if (.not. few) return
@@ -228,6 +229,10 @@ contains
       else
          call first_guess(path, interval, 1.0_wp, contact)
          few = count(contact) < error_at_start/path%model%scene%method%accuracy
+         ! A contact of many summits does not grow in proportion to its shape.
+         gap = path%model%gap(path%state%fields)
+         valley = gap > eoshift(gap, -1, gap(1)) .and. gap >= eoshift(gap, 1, gap(size(gap)))
+         few = few .or. is_rough(merge(node_stick, node_open, contact .and. .not. valley))
       end if
    end function begins_on_few_nodes
 

@@ -314,10 +314,12 @@ contains
 
       call keys%add('solver', 'algorithm', kind_choice, 'mfv: Method of First Violation; conventional: load steps with '// &
                     'corrections of node statuses, for comparison', default='mfv', choices=algorithm_names)
-      call keys%add('solver', 'accuracy', kind_real, 'allowed error: of the tractions, relative to the largest traction, '// &
-                    'and, by large increments, of the dissipation of each load segment, relative to it; 0: only exact large '// &
-                    'increments; if omitted, 1e-3 on meshes of 384 nodes or more, else 0; if given, also chooses nodes; '// &
-                    'dahl, weakening: see friction_tolerance', default='1e-3', lower=0.0_wp, upper=0.1_wp)
+      call keys%add('solver', 'accuracy', kind_real, 'allowed error: of the tractions, relative to the largest traction '// &
+                    '(rough contacts, of at least 8 patches with fewer than 64 nodes each on average: a root mean square, '// &
+                    'relative to that of the tractions), and, by large increments, of the dissipation of each load segment, '// &
+                    'relative to it; 0: only exact large increments; if omitted, 1e-3 on meshes of 384 nodes or more, else 0; '// &
+                    'if given, also chooses nodes; dahl, weakening: see friction_tolerance', &
+                    default='1e-3', lower=0.0_wp, upper=0.1_wp)
       call keys%add('solver', 'stepping', kind_choice, "algorithm='mfv': events found from rates (event), or from trial load "// &
                     'steps and interpolation (nominal), with the same states (coulomb, static_kinetic); large increments '// &
                     '(leap: coulomb); or large increments where they are exact, or accuracy allows them and they cost '// &

@@ -2,6 +2,7 @@
 module mfv_summary
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_case, only: case_type
+   use mfv_chain, only: is_rough
    use mfv_contact_model, only: contact_model_type, new_contact_model
    use mfv_interior, only: has_interior
    use mfv_kinds, only: pi, wp
@@ -73,7 +74,8 @@ contains
                  simulation%contact%certificate%increment_dissipation_error) > 0.0_wp) &
             call add_line(text, 'large increments', 'estimated errors: '// &
                           to_text(simulation%contact%certificate%increment_traction_error, 2)// &
-                          ' of the largest traction, '// &
+                          trim(merge(' of the tractions (root mean square), ', ' of the largest traction,             ', &
+                                     is_rough(simulation%contact%state%status)))//' '// &
                           to_text(simulation%contact%certificate%increment_dissipation_error, 2)// &
                           ' of the dissipation of a load segment')
          if (allocated(simulation%estimate)) call add_estimate(text, case, simulation)
