@@ -386,9 +386,9 @@ def test_wrong_layers_are_refused(layers: str, keys: str, message: str) -> None:
         mfv.run(Scene.from_text(text))
 
 
-@pytest.mark.parametrize("thickness, resolved", [(0.003, False), (0.03, True)])
-def test_edges_of_thin_coatings(thickness: float, resolved: bool) -> None:
-    """Within the last few thicknesses from an edge of the contact tractions do not follow the square root by which edges are found."""
+@pytest.mark.parametrize(("thickness", "allowed"), [(0.003, 5.0e-3), (0.03, 2.0e-4)])
+def test_edges_of_thin_coatings(thickness: float, allowed: float) -> None:
+    """Within the last few thicknesses from an edge of the contact tractions do not follow the square root of the distance."""
 
     def half_width(nodes: int) -> mfv.Result:
         coated = Body.half_plane(youngs_modulus=70e3, poisson_ratio=0.33)
@@ -399,9 +399,5 @@ def test_edges_of_thin_coatings(thickness: float, resolved: bool) -> None:
 
     coarse, fine = half_width(101), half_width(801)
     error = abs(coarse.summary.contact_half_width - fine.summary.contact_half_width)
-    assert ("contact_half_width" not in coarse.attributes["unresolved"].split()) == resolved
-    assert np.isfinite(coarse.error_estimate.contact_half_width_error) == resolved
-    if resolved:
-        assert error < 2.0e-4 * fine.summary.contact_half_width
-    else:
-        assert error > 0.01 * fine.summary.contact_half_width
+    assert error < allowed * fine.summary.contact_half_width
+    assert error < 2.0 * coarse.error_bar("contact_half_width")

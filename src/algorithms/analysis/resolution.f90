@@ -376,9 +376,8 @@ contains
       end associate
    end subroutine check_rounded_edges
 
-   !> Layers thinner than a few intervals: tractions and stresses change over their thickness at the edges of the contact, so that
-   !> edges between nodes are not found from the tractions beside them. Nearly incompressible ones on a rigid body are squeezed out
-   !> from where the mesh sees no difference of pressure.
+   !> Layers thinner than a few intervals: their stresses change over their thickness at the edges of the contact. Nearly
+   !> incompressible ones on a rigid body are squeezed out from where the mesh sees no difference of pressure.
    subroutine check_thin_layers(simulation, upper, unresolved)
       type(simulation_type), intent(in) :: simulation
       logical, intent(in) :: upper
@@ -401,8 +400,8 @@ contains
          names = ''
          associate (below => layers%compliance((0.0_wp, 0.0_wp)), endless => layers%layer(1)%endless)
             if (maxval(abs(below - endless)) > least_change*maxval(abs(endless))) &
-               names = 'contact_half_width contact_length '//name//'_tension largest_'//name//'_tension largest_'//name// &
-                       '_interface_tension largest_'//name//'_interface_shear'
+               names = name//'_tension largest_'//name//'_tension largest_'//name//'_interface_tension largest_'//name// &
+                       '_interface_shear'
          end associate
          if (layers%rigid_base .and. layers%uniform(1, 1) > incompressible*layers%uniform(2, 2)) names = all_quantities(simulation)
          if (names == '' .or. thickness >= resolved_nodes*interval) return

@@ -61,6 +61,8 @@ module mfv_certificate
       !> Largest estimated errors of large increments: of the tractions relative to the largest traction so far, and of the
       !> dissipated energy relative to the dissipation of the interval.
       real(wp) :: increment_traction_error = 0.0_wp, increment_dissipation_error = 0.0_wp
+      !> Whether the former is a root mean square, that of a rough contact.
+      logical :: by_mean_square = .false.
       !> Largest traction so far, force/length^2; largest force of every motion so far.
       real(wp) :: traction_scale = 0.0_wp, force_scale(motion_count) = 0.0_wp
       !> Largest displacements and energy so far.
@@ -138,11 +140,14 @@ contains
    end subroutine note_jump
 
    !> Record the estimated errors of an interval of large increments: of the tractions at its end and of the dissipated energy, with
-   !> what they are relative to: `traction`, force/length^2, and `work`, force.
-   pure subroutine note_large_increment(self, traction_error, traction, work_error, work)
+   !> what they are relative to: `traction`, force/length^2, and `work`, force. `by_mean_square`: whether the former is a root mean
+   !> square.
+   pure subroutine note_large_increment(self, traction_error, traction, work_error, work, by_mean_square)
       class(certificate_type), intent(inout) :: self
       real(wp), intent(in) :: traction_error, traction, work_error, work
+      logical, intent(in) :: by_mean_square
 
+      self%by_mean_square = self%by_mean_square .or. by_mean_square
       if (traction > 0.0_wp) self%increment_traction_error = max(self%increment_traction_error, traction_error/traction)
       if (work > 0.0_wp) self%increment_dissipation_error = max(self%increment_dissipation_error, work_error/work)
    end subroutine note_large_increment

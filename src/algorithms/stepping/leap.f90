@@ -219,8 +219,7 @@ contains
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: interval
       type(leap_progress_type), intent(in) :: progress
-      logical, dimension(size(path%state%status)) :: contact, valley
-      real(wp) :: gap(size(contact))
+      logical :: contact(size(path%state%status))
 
       few = is_coupled(path)
       if (.not. few) return
@@ -229,10 +228,6 @@ contains
       else
          call first_guess(path, interval, 1.0_wp, contact)
          few = count(contact) < error_at_start/path%model%scene%method%accuracy
-         ! A contact of many summits does not grow in proportion to its shape.
-         gap = path%model%gap(path%state%fields)
-         valley = gap > eoshift(gap, -1, gap(1)) .and. gap >= eoshift(gap, 1, gap(size(gap)))
-         few = few .or. is_rough(merge(node_stick, node_open, contact .and. .not. valley))
       end if
    end function begins_on_few_nodes
 
@@ -825,7 +820,7 @@ contains
       path%work = before + work_of_motions(path, chain, share*chain%node_wise, path%work - before)
       if (allocated(chain%samples)) call path%recent%keep(interval%load, chain%samples)
       call path%certificate%note_large_increment(chain%traction_error, reference_traction(path, progress, chain), &
-                                                 chain%work_error, reference_work(path, progress, chain))
+                                                 chain%work_error, reference_work(path, progress, chain), chain%rough)
    end subroutine accept_chain
 
    !> The work of the forces of all motions, force, from that along `straight` lines between the ends of increments, or from the

@@ -49,8 +49,8 @@ contains
    !> Columns of numbers from a text file, without comments and lines of text before the numbers; a first column of row numbers,
    !> followed by a column that increases, is dropped. `names`: of the columns, for messages; `columns`: their number; `increasing`:
    !> whether the first must increase; rows in which it decreases are reversed. `table`: shape (columns, rows).
-   !> `is_trace`: cells may have no value, NaN then, and the last column may be alone: shape (1, rows). `heading`: names of columns in
-   !> the file, none without.
+   !> `is_trace`: cells may have no value, NaN then, and the last column may be alone: shape (1, rows). `heading`: names of columns
+   !> in the file, none without.
    !> Error MFV_INPUT_ERROR with line, column and what would be right.
    subroutine read_table(path, names, columns, increasing, table, error, is_trace, heading)
       character(*), intent(in) :: path, names

@@ -2,7 +2,6 @@
 module mfv_summary
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_case, only: case_type
-   use mfv_chain, only: is_rough
    use mfv_contact_model, only: contact_model_type, new_contact_model
    use mfv_interior, only: has_interior
    use mfv_kinds, only: pi, wp
@@ -75,7 +74,7 @@ contains
             call add_line(text, 'large increments', 'estimated errors: '// &
                           to_text(simulation%contact%certificate%increment_traction_error, 2)// &
                           trim(merge(' of the tractions (root mean square), ', ' of the largest traction,             ', &
-                                     is_rough(simulation%contact%state%status)))//' '// &
+                                     simulation%contact%certificate%by_mean_square))//' '// &
                           to_text(simulation%contact%certificate%increment_dissipation_error, 2)// &
                           ' of the dissipation of a load segment')
          if (allocated(simulation%estimate)) call add_estimate(text, case, simulation)
