@@ -400,4 +400,4 @@ def test_edges_of_thin_coatings(thickness: float, allowed: float) -> None:
     coarse, fine = half_width(101), half_width(801)
     error = abs(coarse.summary.contact_half_width - fine.summary.contact_half_width)
     assert error < allowed * fine.summary.contact_half_width
-    assert error < 2.0 * coarse.error_bar("contact_half_width")
+    assert error < 3.0 * coarse.error_bar("contact_half_width")  # as in tests/truth
