@@ -27,7 +27,7 @@ HEADING = "## All groups and keys\n\n"
 TYPES = {"a text": "str", ".true.": "bool", "a whole number": "int", "a number": "float"}
 LISTS = {"friction": "Coefficient", "history": "LoadList"}
 
-#: Keys of &layer that are none of its material; `body` is none of a Layer in Python, which belongs to a body.
+#: Keys of &layer that do not describe its material (besides `body`, which Python's Layer does not have).
 NO_MATERIAL = ("thickness", "elasticity")
 
 

@@ -30,6 +30,7 @@ ZONES: dict[int, dict[str, Any]] = {
         (NodeStatus.FRICTIONLESS, "frictionless contact", WITHOUT_FRICTION, "none", None),
     )
 }
+
 STYLE: dict[Any, Any] = {
     "font.family": ["STIXGeneral"],
     "mathtext.fontset": "stix",
@@ -45,8 +46,10 @@ STYLE: dict[Any, Any] = {
     "xtick.top": True,
     "ytick.right": True,
 }
+
 #: Size of a panel with its labels in inch.
 PANEL_WIDTH, PANEL_HEIGHT = 3.6, 3.3
+
 #: Letters of the caption per inch; width of the key of a legend entry, in letters.
 LETTERS_PER_INCH, KEY_LETTERS = 19, 9
 
@@ -115,6 +118,7 @@ def add_legend(picture: Figure, caption: str = "", lines_first: bool = True) -> 
 
 
 def heading(result: Result, step: int | None) -> str:
+    """The title of the result and, for a saved state, which one it is."""
     if step is None:
         return result.title
     state = result.at(step)
