@@ -99,6 +99,12 @@ def test_uncoupled_shear_by_superposition() -> None:
     assert whole.summary.events == 0
 
 
+@pytest.mark.parametrize("seed", range(10, 30))
+def test_a_press_without_coupling_leaves_no_shear(seed: int) -> None:
+    """Also where nodes leave and touch again as the statuses are found."""
+    assert not np.any(pressed(surface(320, seed=seed), Step(normal_force=0.1)).state.shear)
+
+
 def check_against_events(points: int, seed: int, coupling: str) -> None:
     """States after shear and a cycle, exactly as by events."""
     profile = surface(points, seed=seed, cut_off=8 * LENGTH / points)

@@ -10,6 +10,7 @@
 !> edge then converges quadratically, and the number of solves hardly depends on the number of nodes. Changing only the violating
 !> nodes would just halve the distance.
 module mfv_active_set
+   use mfv_compliance, only: block_wt
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path, only: contact_path_type, segment_type
    use mfv_contact_state, only: contact_state_type
@@ -136,14 +137,15 @@ contains
       found = .false.
    end subroutine find_statuses
 
-   !> Nodes that close again slip: stuck they pulled, since their slip is far from that at which they would hold, and shear causes
-   !> normal displacements. `closed`: nodes that were in contact before, shape (nodes).
+   !> If shear causes normal displacements, nodes that close again slip: stuck they pulled, since their slip is far from that at
+   !> which they would hold. `closed`: nodes that were in contact before, shape (nodes).
    pure subroutine slip_on_return(path, fields, closed, wanted)
       class(contact_path_type), intent(in) :: path
       type(contact_fields_type), intent(in) :: fields
       logical, intent(in) :: closed(:)
       integer, intent(inout) :: wanted(:)
 
+      if (.not. path%model%compliance%has_block(block_wt)) return
       where (wanted == node_stick .and. closed .and. .not. in_contact(path%state%status)) &
          wanted = merge(node_slip_right, node_slip_left, fields%slip() > path%state%stuck_slip)
    end subroutine slip_on_return
