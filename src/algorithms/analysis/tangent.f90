@@ -64,7 +64,7 @@ contains
       if (present(direction)) then
          call adapt_statuses(copy, direction, error)
       else if (sticks) then
-         call copy%start_segment(segment_type(), error)
+         call copy%switch_friction(segment_type(), error)
       end if
       if (allocated(error)) return
       allocate (system, source=copy%system)

@@ -101,7 +101,7 @@ contains
 
       associate (method => self%contact%model%scene%method)
          if (is_held(self)) then
-            call self%contact%start_segment(self%segment, error)
+            call self%contact%switch_friction(self%segment, error)
             if (.not. allocated(error)) call self%contact%notify(self%segment, 1.0_wp, observer, error)
          else if (method%algorithm == algorithm_conventional) then
             call apply_conventionally(self%contact, self%segment, observer, error)

@@ -52,8 +52,6 @@ contains
          self%solves = self%solves + 1
          self%iterations = self%iterations - system%iterations
          self%products = self%products - system%products
-         system%allowed = self%allowed
-         system%allowed_in_rates = self%allowed_in_rates
          call system%solve(model, constraints, start, response, singular)
          self%iterations = self%iterations + system%iterations
          self%products = self%products + system%products

@@ -50,6 +50,9 @@ module mfv_contact_system
       logical :: rates_only = .false.
       !> Whether nodes change their status one by one, from event to event, which decides on the solver.
       logical :: one_by_one = .false.
+      !> Relative errors of states, and of rates but those of the loads, that iterative solvers may leave, if above the
+      !> linear_tolerance of the scene.
+      real(wp) :: allowed = 0.0_wp, allowed_in_rates = 0.0_wp
    end type constraints_type
 
    !> Prescribed values of the state, or of its rates per unit of load.
@@ -78,9 +81,6 @@ module mfv_contact_system
       !> Tolerance of tractions, motions and their rates of the last solve, relative to the largest; 0: round-off.
       !> `rate_tolerance`: the same of the rates that may be less accurate.
       real(wp) :: tolerance = 0.0_wp, rate_tolerance = 0.0_wp
-      !> Relative errors of states, and of rates but those of the loads, that iterative solvers may leave, if above the
-      !> linear_tolerance of the scene.
-      real(wp) :: allowed = 0.0_wp, allowed_in_rates = 0.0_wp
       !> Whether the last solve failed although the constraints may determine the fields: the iteration did not converge.
       logical :: gave_up = .false.
    contains

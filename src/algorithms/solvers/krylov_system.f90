@@ -119,8 +119,8 @@ contains
       real(wp), allocatable :: unknowns(:)
       real(wp) :: error
 
-      self%tolerance = margin*max(model%scene%method%linear_tolerance, self%allowed)
-      self%rate_tolerance = max(self%tolerance, margin*self%allowed_in_rates)
+      self%tolerance = margin*max(model%scene%method%linear_tolerance, constraints%allowed)
+      self%rate_tolerance = max(self%tolerance, margin*constraints%allowed_in_rates)
       call fit_to_mesh(self, model)
       call choose_unknowns(self, model, constraints)
       call prepare_preconditioner(self, model, fails)
@@ -144,8 +144,8 @@ contains
       associate (last => self%last(constraints%kind))
          unknowns = [last%pressure(self%contact), last%shear(self%held), last%motion(self%free)]
       end associate
-      call iterate(self, model, right, max(model%scene%method%linear_tolerance, self%allowed, &
-                                           merge(0.0_wp, self%allowed_in_rates, constraints%kind == rates_of_loads)), &
+      call iterate(self, model, right, max(model%scene%method%linear_tolerance, constraints%allowed, &
+                                           merge(0.0_wp, constraints%allowed_in_rates, constraints%kind == rates_of_loads)), &
                    unknowns, fails, error)
       if (fails) return
       call set_fields(self, model, prescribed, right, unknowns, response%rate)

@@ -58,14 +58,12 @@ contains
       integer, dimension(size(path%state%status)) :: wanted
       integer :: tried(size(path%state%status), most_solves)
       real(wp), dimension(size(path%state%status)) :: hold, ahead, before
-      real(wp) :: allowed
       type(contact_state_type) :: consistent
       logical :: possible, by_edges, rough, accurate, is_consistent
       integer :: solve, first, looks, stuck
 
       found = .false.
-      allowed = path%system%allowed
-      rough = allowed < intermediate
+      rough = segment%allowed < intermediate
       by_edges = .true.
       first = 1
       hold = path%state%fields%slip()
@@ -78,15 +76,14 @@ contains
          call constrain(path, segment, done, constraints, possible)
          if (.not. possible) return
          path%state%stuck_slip = hold
-         path%system%allowed = merge(intermediate, allowed, rough)
+         if (rough) constraints%allowed = intermediate
          call solve_with_fronts(path, constraints, path%state%stuck_slip, ahead, fields, possible, held, in_proportion)
-         path%system%allowed = allowed
          if (.not. possible) return
          call find_wanted(path, segment, fields, wanted, held)
          if (.not. present(held)) call slip_on_return(path, fields, any(in_contact(tried(:, :solve)), dim=2), wanted)
          found = all(wanted == path%state%status)
          is_consistent = found
-         accurate = .not. rough .or. path%system%tolerance <= max(round_off, allowed)
+         accurate = .not. rough .or. path%system%tolerance <= max(round_off, segment%allowed)
          if (.not. accurate .and. count(wanted /= path%state%status) <= few) then
             rough = .false.
             first = solve + 1

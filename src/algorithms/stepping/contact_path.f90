@@ -38,6 +38,8 @@ module mfv_contact_path
       logical :: friction = .true.
       !> Number of this segment, number of segments, and the step that it belongs to; for records and progress.
       integer :: number = 1, segments = 1, step = 1
+      !> Relative errors that iterative solvers may leave (constraints_type).
+      real(wp) :: allowed = 0.0_wp, allowed_in_rates = 0.0_wp
       !> Start and end as fractions of the whole segment that this one belongs to; for progress.
       real(wp) :: from = 0.0_wp, to = 1.0_wp
    end type segment_type
@@ -105,7 +107,7 @@ module mfv_contact_path
       procedure :: wear_at_once
       procedure :: end_wear
       procedure :: record
-      procedure :: start_segment
+      procedure :: switch_friction
       procedure :: find_constraints
       procedure :: loads_at
       procedure :: has_over_stress
@@ -306,7 +308,7 @@ contains
 
    !> Switch friction on or off at the nodes in contact. The first friction starts the tangential problem. Error
    !> MFV_INADMISSIBLE_STEP: friction is switched off under shear traction.
-   subroutine start_segment(self, segment, error)
+   subroutine switch_friction(self, segment, error)
       class(contact_path_type), intent(inout) :: self
       type(segment_type), intent(in) :: segment
       type(error_type), allocatable, intent(out) :: error
@@ -324,7 +326,7 @@ contains
       end if
       status = node_frictionless
       call self%set_status(in_contact(self%state%status), status)
-   end subroutine start_segment
+   end subroutine switch_friction
 
    !> Start the tangential problem from the present pressures, if it is not modelled yet.
    subroutine begin_tangential(self)
@@ -384,7 +386,7 @@ contains
       call self%model%set_worn(self%state%worn)
    end subroutine end_wear
 
-   !> The prescribed loads at the fraction `done` of the segment.
+   !> The prescribed loads at the fraction `done` of the segment, and the errors that it allows.
    subroutine loads_at(self, segment, done, constraints)
       class(contact_path_type), intent(in) :: self
       type(segment_type), intent(in) :: segment
@@ -392,6 +394,8 @@ contains
       type(constraints_type), intent(inout) :: constraints
 
       constraints%load = load_at(segment%load, done)
+      constraints%allowed = segment%allowed
+      constraints%allowed_in_rates = segment%allowed_in_rates
    end subroutine loads_at
 
    !> The constraints at the fraction `done` of the segment. Motions that the present contact does not determine are held: the

@@ -48,7 +48,7 @@ contains
       real(wp) :: done
       logical :: again
 
-      call path%start_segment(segment, error)
+      call path%switch_friction(segment, error)
       done = 0.0_wp
       do while (done < 1.0_wp .and. .not. allocated(error))
          done = done + path%model%scene%method%load_step

@@ -83,7 +83,7 @@ contains
       type(constraints_type) :: constraints
       integer :: nodes
 
-      call path%start_segment(segment, error)
+      call path%switch_friction(segment, error)
       if (allocated(error)) return
       progress%from_nothing = .not. any(path%state%fields%pressure > 0.0_wp)
       nodes = size(path%state%status)

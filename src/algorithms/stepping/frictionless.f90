@@ -40,7 +40,7 @@ contains
          call apply_by_violations(path, segment, observer, error)
          return
       end if
-      call path%start_segment(segment, error)
+      call path%switch_friction(segment, error)
       if (allocated(error)) return
       fraction = before_separation(segment)
       if (lacks_support(path, segment)) fraction = 0.0_wp

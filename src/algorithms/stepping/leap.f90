@@ -86,7 +86,7 @@ contains
          call apply_directly(path, segment, observer, error)
          return
       end if
-      call path%start_segment(segment, error)
+      call path%switch_friction(segment, error)
       if (allocated(error)) return
       if (.not. lacks_support(path, segment)) progress%goal = before_separation(segment)
       progress%dissipation = path%state%dissipation
@@ -157,10 +157,9 @@ contains
          call begin_by_violations(path, segment, progress)
          return
       end if
+      call allow_errors(path, progress, interval)
       call refine(path, interval, progress, chain, accepted)
-      if (accepted .and. path%system%allowed > 0.0_wp) call finish_chain(path, interval, chain, accepted)
-      path%system%allowed = 0.0_wp
-      path%system%allowed_in_rates = 0.0_wp
+      if (accepted .and. interval%allowed > 0.0_wp) call finish_chain(path, interval, chain, accepted)
       if (chain%exceeded) then
          call grow_mesh(path, grown)
          if (grown) return
@@ -313,7 +312,6 @@ contains
       integer :: increments
       logical :: rough
 
-      call allow_errors(path, progress)
       rough = is_rough(path%state%status)
       if (may_depend_on_path(path, interval) .and. (path%leaving%pending .or. .not. rough)) call find_start(path, interval, start)
       call find_stiffness(path, interval, start)
@@ -450,15 +448,16 @@ contains
    !> Allow errors of iterative solvers that are negligible beside that of a chain and in the certificate: of the rates, only signs
    !> and corrections of slips are used, and smaller ones where a contact grows that has begun in the segment, whose fronts may
    !> rest. Without coupling this would save nothing: the preconditioner is exact.
-   subroutine allow_errors(path, progress)
-      class(contact_path_type), intent(inout) :: path
+   subroutine allow_errors(path, progress, interval)
+      class(contact_path_type), intent(in) :: path
       type(leap_progress_type), intent(in) :: progress
+      type(segment_type), intent(inout) :: interval
       real(wp), parameter :: most = 1.0e-9_wp, in_rates = 1.0e-2_wp, at_fronts = 3.0e-3_wp, most_in_rates = 1.0e-4_wp
 
       if (.not. (path%model%compliance%has_block(block_up) .and. path%model%compliance%has_block(block_wt))) return
       associate (accuracy => path%model%scene%method%accuracy)
-         path%system%allowed = min(visible*accuracy, most)
-         path%system%allowed_in_rates = min(merge(at_fronts, in_rates, has_begun(progress))*accuracy, most_in_rates)
+         interval%allowed = min(visible*accuracy, most)
+         interval%allowed_in_rates = min(merge(at_fronts, in_rates, has_begun(progress))*accuracy, most_in_rates)
       end associate
    end subroutine allow_errors
 
@@ -469,11 +468,13 @@ contains
       type(chain_type), intent(inout) :: chain
       logical, intent(out) :: found
       type(contact_state_type) :: start
+      type(segment_type) :: accurate
 
       start = path%state
-      path%system%allowed = 0.0_wp
+      accurate = interval
+      accurate%allowed = 0.0_wp
       path%state = chain%before(chain%increments)
-      call find_statuses_on_mesh(path, interval, 1.0_wp, chain%after(chain%increments), found, chain%exceeded, chain%held, &
+      call find_statuses_on_mesh(path, accurate, 1.0_wp, chain%after(chain%increments), found, chain%exceeded, chain%held, &
                                  chain%begins)
       chain%found = found
       chain%before(chain%increments)%status = path%state%status
