@@ -105,6 +105,13 @@ def test_a_press_without_coupling_leaves_no_shear(seed: int) -> None:
     assert not np.any(pressed(surface(320, seed=seed), Step(normal_force=0.1)).state.shear)
 
 
+def test_narrow_stick_zones_are_one_warning() -> None:
+    """However many of them there are."""
+    result = pressed(surface(seed=2, cut_off=LENGTH / 80), Step(normal_force=0.1), Step(force_ratio=0.8))
+    found = [warning for warning in result.warnings if "stick zones" in warning]
+    assert len(found) == 1 and found[0].startswith("3 of 13 stick zones have only one or two nodes, the first near x = -0.07")
+
+
 def check_against_events(points: int, seed: int, coupling: str) -> None:
     """States after shear and a cycle, exactly as by events."""
     profile = surface(points, seed=seed, cut_off=8 * LENGTH / points)

@@ -648,25 +648,25 @@ contains
          end associate
       end subroutine check_jumps
 
-      !> One of several stick zones that has one or two nodes may not be there on another mesh.
+      !> Of several stick zones those with one or two nodes may not be there on another mesh.
       subroutine check_narrow_zones()
          integer, parameter :: most = 2
-         integer :: i
+         logical, allocatable :: narrow(:)
+         character(:), allocatable :: text
 
          associate (model => simulation%contact%model)
             zones = zones_of(held(simulation%contact%state))
-            if (size(zones) < 2) return
-            do i = 1, size(zones)
-               nodes = zones(i)%last - zones(i)%first + 1
-               ! What ends with the mesh may go on at its other end.
-               if (nodes > most .or. zones(i)%first == 1 .or. zones(i)%last == model%nodes()) cycle
-               names = 'stick_zones'
-               if (i == 1) names = names//' stick_left left_slip_zone'
-               if (i == size(zones)) names = names//' stick_right right_slip_zone'
-               call add_unresolved(unresolved, names, 'near x = '//to_text(model%x(zones(i)%first), 4)//' one of '// &
-                                   to_text(size(zones))//' stick zones has only '//to_text(nodes)// &
-                                   trim(merge(' node ', ' nodes', nodes == 1)), 'use more nodes')
-            end do
+            ! What ends with the mesh may go on at its other end.
+            narrow = zones%last - zones%first < most .and. zones%first > 1 .and. zones%last < model%nodes()
+            if (size(zones) < 2 .or. .not. any(narrow)) return
+            names = 'stick_zones'
+            if (narrow(1)) names = names//' stick_left left_slip_zone'
+            if (narrow(size(zones))) names = names//' stick_right right_slip_zone'
+            text = to_text(count(narrow))//' of '//to_text(size(zones))//' stick zones '// &
+                   trim(merge('has ', 'have', count(narrow) == 1))//' only one or two nodes'
+            if (count(narrow) > 1) text = text//', the first'
+            text = text//' near x = '//to_text(model%x(zones(findloc(narrow, .true., dim=1))%first), 4)
+            call add_unresolved(unresolved, names, text, 'use more nodes')
          end associate
       end subroutine check_narrow_zones
 
