@@ -33,18 +33,18 @@ module mfv_layer_stress
    end type stress_row_type
 
    !> The functions at all depths between two.
-   type :: block_type
+   type :: depths_type
       integer :: layer = 1
       real(wp) :: from = 0.0_wp, to = 0.0_wp
       type(stress_row_type) :: row(terms_down)
-   end type block_type
+   end type depths_type
 
    type :: layer_stress_type
       type(layers_type) :: layers
       real(wp) :: period = 0.0_wp, reach = 0.0_wp
       !> At the surface, at the upper sides of the interfaces (from 0), and at all depths.
       type(stress_row_type), allocatable :: interface(:)
-      type(block_type), allocatable :: block(:)
+      type(depths_type), allocatable :: block(:)
    contains
       procedure :: prepare
       procedure :: row
@@ -120,8 +120,8 @@ contains
       class(layer_stress_type), intent(inout) :: self
       integer, intent(in) :: number, halvings
       real(wp), intent(in) :: from, to
-      type(block_type), allocatable :: longer(:)
-      type(block_type) :: block
+      type(depths_type), allocatable :: longer(:)
+      type(depths_type) :: block
       integer :: n
 
       block%layer = number
@@ -143,7 +143,7 @@ contains
 
    !> Whether the last terms of the series in the depth are small.
    pure logical function has_converged(block)
-      type(block_type), intent(in) :: block
+      type(depths_type), intent(in) :: block
       real(wp), parameter :: tolerance = 5.0e-12_wp
       real(wp) :: weight(terms_down), largest
       real(wp), allocatable :: term(:, :, :)
