@@ -14,6 +14,7 @@ module mfv_chain
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_count, motion_approach, motion_shift, control_force
    use mfv_node_status
+   use mfv_tolerances, only: significant
    implicit none
    private
    public :: chain_type, make_chain, add_samples, find_rates_after, is_rough, error_at_start
@@ -97,8 +98,8 @@ contains
          status = path%state%status
          if (chain%fronts) held = holding_before(chain, start, i)
          by_pressure = .false.
-         if (i == 1) call guess_slip(path, interval, reached(chain, i), by_pressure, held)
          chain%after(i) = path%state%fields
+         if (i == 1) call guess_slip(path, interval, reached(chain, i), chain%after(i), by_pressure, held)
          known = .false.
          if (present(coarser) .and. .not. by_pressure) call guess_from(path, coarser, start, chain, i, known)
          if (chain%fronts .and. .not. (chain%begins .or. known)) &
@@ -291,7 +292,7 @@ contains
          call guess_as_before(path, interval, i, ubound(chain%samples, 1), sample%fields, known)
          ! Between the ends of the interval, which may be far apart.
          if (ubound(chain%samples, 1) == 2 .and. chain%increments == 1 .and. .not. known) &
-            call guess_slip(path, interval, fraction, known, holding_before(chain, start, 1))
+            call guess_slip(path, interval, fraction, sample%fields, known, holding_before(chain, start, 1))
          if (.not. known) &
             call path%set_status(spread(.true., 1, size(left%status)), statuses_between(left%status, right%status))
          call find_statuses_on_mesh(path, interval, fraction, sample%fields, found, exceeded, &
@@ -430,12 +431,13 @@ contains
    !> A first guess of the slipping nodes at a fraction of the interval: they slip in the direction of the tangential load. Under
    !> constant pressures and tangential force control their number is that of Mindlin's contact of cylinders: the edge of the stick
    !> zone is where the pressure is sqrt(Q/(mu P)) of the largest in its patch; after a reversal, with half the change in place of
-   !> Q. Only nodes
+   !> Q. The opposite force usually has the opposite of all shear, `fields`, and the same stick zones (Masing). Only nodes
    !> stick that hold from the start (`held`), if these are known. `by_pressure`: whether their number follows from the pressures.
-   subroutine guess_slip(path, interval, fraction, by_pressure, held)
+   subroutine guess_slip(path, interval, fraction, fields, by_pressure, held)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
       real(wp), intent(in) :: fraction
+      type(contact_fields_type), intent(inout) :: fields
       logical, intent(out) :: by_pressure
       logical, intent(in), optional :: held(:)
       integer, dimension(size(path%state%status)) :: status
@@ -446,8 +448,8 @@ contains
       if (.not. abs(interval%load(motion_shift)%rate) > 0.0_wp) return
       status = merge(node_slip_left, node_slip_right, interval%load(motion_shift)%rate > 0.0_wp)
       reverses = any(slips(path%state%status) .and. path%state%status /= status)
-      associate (fields => path%state%fields, load => interval%load(motion_shift))
-         sliding_limit = path%model%force(path%model%static_friction*fields%pressure)
+      associate (start => path%state%fields, load => interval%load(motion_shift))
+         sliding_limit = path%model%force(path%model%static_friction*start%pressure)
          if (load%control /= control_force .or. abs(interval%load(motion_approach)%rate) > 0.0_wp .or. &
              .not. sliding_limit > 0.0_wp) then
             call path%set_status(slips(path%state%status), status)
@@ -455,11 +457,19 @@ contains
          end if
          by_pressure = .true.
          force = load%value + fraction*load%rate
-         if (reverses) force = 0.5_wp*(force - fields%force(motion_shift))
-         force = max(sign(1.0_wp, load%rate)*force, 0.0_wp)
          can_stick = .true.
          if (present(held)) can_stick = held
-         where (can_stick .and. fields%pressure > sqrt(force/sliding_limit)*largest_of_patches(fields%pressure)) status = node_stick
+         if (reverses .and. abs(force + start%force(motion_shift)) <= significant*abs(force)) then
+            can_stick = can_stick .and. path%state%status == node_stick
+            fields%shear = -start%shear
+            fields%tangential = -start%tangential
+            fields%motion(motion_shift) = -start%motion(motion_shift)
+         else
+            if (reverses) force = 0.5_wp*(force - start%force(motion_shift))
+            force = max(sign(1.0_wp, load%rate)*force, 0.0_wp)
+            can_stick = can_stick .and. start%pressure > sqrt(force/sliding_limit)*largest_of_patches(start%pressure)
+         end if
+         where (can_stick) status = node_stick
       end associate
       call path%set_status(in_contact(path%state%status), status)
    end subroutine guess_slip
