@@ -1,7 +1,7 @@
 """Measured traces on more and more nodes at each of their points: contact length, patches and dissipation, with bars and verdicts.
 
 The traces are test data of the package SurfaceTopography (github.com/ContactEngineering/SurfaceTopography, folder
-test/file_format_examples; not in its wheel): copy or clone them. Prints Markdown tables; --document replaces those of a page. Five
+test/file_format_examples; not in its wheel): copy or clone them. Prints a Markdown table; --document replaces that of a page. Five
 minutes.
 
 build/venv/bin/python bench/traces.py FOLDER [--document docs/verification.md]
@@ -40,7 +40,7 @@ SHORTEST = 16
 #: Steel on a rigid trace: mean pressure over E* times the rms slope; friction; part of the sliding limit.
 MODULUS, POISSON, PRESSURE, MU, SHARE = 210.0e3, 0.3, 0.02, 0.3, 0.6
 QUANTITIES = ("contact_length", "patches", "cycle_dissipation")
-#: Before and after the tables in a page.
+#: Before and after the table in a page.
 MARK = "<!-- traces -->\n"
 
 
@@ -116,12 +116,12 @@ def rows(path: Path, smoothed: bool) -> Iterator[Row]:
 
 
 def cell(row: Row, name: str, reference: float) -> str:
-    """The error in percent, and the verdict: the bar in percent, or that it is not resolved."""
+    """The error in percent, with the bar in percent in brackets, or a question mark where it is not resolved."""
     percent = 100.0 * (row.values[name] / reference - 1.0)
-    error = f"{percent:+.0f} %" if abs(percent) >= 10.0 else f"{percent:+.2g} %"
+    error = f"{percent:+.0f}" if abs(percent) >= 10.0 else f"{percent:+.2g}"
     if name in row.unresolved:
-        return f"{error}, not resolved"
-    return f"{error}, bar {100.0 * row.bars[name] / abs(row.values[name]):.1g} %"
+        return f"{error}?"
+    return f"{error} ({100.0 * row.bars[name] / abs(row.values[name]):.1g})"
 
 
 def order(found: list[Row], name: str) -> str:
@@ -131,10 +131,9 @@ def order(found: list[Row], name: str) -> str:
 
 
 def table(folder: Path) -> str:
-    """Of all traces, as measured and smoothed."""
-    lines = ["| trace | nodes at a point | nodes in each patch | patches | contact length | dissipation of a cycle |"]
-    lines.append("| --- |" + " ---: |" * 5)
-    orders = ["| trace | order of the contact length | of the dissipation |", "| --- | ---: | ---: |"]
+    """Of all traces, as measured and smoothed: a line each, with the numbers of all nodes at a point but the last."""
+    lines = ["| trace | nodes in each patch | contact length, % | order | dissipation of a cycle, % | order |"]
+    lines.append("| --- | --- | --- | ---: | --- | ---: |")
     for name in TRACES:
         for smoothed in (False, True):
             title = f"{name}, {'smoothed' if smoothed else 'as measured'}"
@@ -142,20 +141,20 @@ def table(folder: Path) -> str:
             for row in rows(folder / name, smoothed):
                 found.append(row)
                 print(title, row, file=sys.stderr, flush=True)
-            last = found[-1].values
-            for row in found[:-1]:
-                each = row.in_contact / row.values["patches"]
-                cells = [cell(row, quantity, last[quantity]) for quantity in ("contact_length", "cycle_dissipation")]
-                lines.append(f"| {title} | {row.finer} | {each:.1f} | {row.values['patches']:.0f} | {' | '.join(cells)} |")
-            orders.append(f"| {title} | {order(found, 'contact_length')} | {order(found, 'cycle_dissipation')} |")
-    return "\n".join([*lines, "", *orders]) + "\n"
+            cells = [title, ", ".join(f"{row.in_contact / row.values['patches']:.1f}" for row in found[:-1])]
+            for quantity in ("contact_length", "cycle_dissipation"):
+                reference = found[-1].values[quantity]
+                cells.append(", ".join(cell(row, quantity, reference) for row in found[:-1]))
+                cells.append(order(found, quantity))
+            lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines) + "\n"
 
 
 def main() -> None:
     """Measure, print or document."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, help="of the files " + ", ".join(TRACES))
-    parser.add_argument("--document", type=Path, help="page whose part between '<!-- traces -->' marks becomes the tables")
+    parser.add_argument("--document", type=Path, help="page whose part between '<!-- traces -->' marks becomes the table")
     options = parser.parse_args()
     text = table(options.folder)
     print(text)

@@ -772,7 +772,7 @@ contains
                                                         /pair%normal, least_softness)
    end function pressure_at_jumps
 
-   !> Larger uncertainties of edges where the exponents of the tractions are less certain (docs/verification.md): of contact with
+   !> Larger uncertainties of edges where the exponents of the tractions are less certain: of contact with
    !> full coupling, where they depend on the friction, and of stick zones that can have grown. If the contact `has_receded` with
    !> full coupling, its edge is known to an interval unless the outermost nodes, from which it is found, slip alike.
    pure subroutine widen_uncertainties(model, state, has_receded, patches)

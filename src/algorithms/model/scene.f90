@@ -94,7 +94,7 @@ module mfv_scene
    real(wp), parameter :: accuracy_by_mesh = -1.0_wp
 
    !> Part of the wanted error of dissipation that an increment with nonlinear friction may have in its tractions: load segments
-   !> then have an error of 0.3 of the wanted one as a median, and of 1.6 at most (docs/verification.md).
+   !> then have an error of 0.1 of the wanted one as a median, and of 0.7 at most (docs/verification.md).
    real(wp), parameter :: friction_tolerance_part = 0.1_wp
 
    !> Nodes of a mesh by default, and around a neat fit; and most nodes on account of an accuracy, of the points of a profile,
