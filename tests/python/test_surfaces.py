@@ -112,11 +112,11 @@ def test_narrow_stick_zones_are_one_warning() -> None:
     assert len(found) == 1 and found[0].startswith("3 of 13 stick zones have only one or two nodes, the first near x = -0.07")
 
 
-def check_against_events(points: int, seed: int, coupling: str) -> None:
-    """States after shear and a cycle, exactly as by events."""
+def check_against_events(points: int, seed: int, coupling: str, force: float = 0.1) -> None:
+    """States after shear and a cycle, exactly as by events. Without coupling below 64 nodes in contact each leg is one increment."""
     profile = surface(points, seed=seed, cut_off=8 * LENGTH / points)
     lower, upper = Body.half_plane(youngs_modulus=1.0, poisson_ratio=0.3), Body.profile(profile.x, profile.height, rigid=True)
-    steps = [Step(normal_force=0.1), Step(force_ratio=0.6), Step(force_ratio=-0.6, cycles=1)]
+    steps = [Step(normal_force=force), Step(force_ratio=0.6), Step(force_ratio=-0.6, cycles=1)]
     mesh = Mesh(nodes=points, period=LENGTH)
     scene = Scene(lower, upper, mesh=mesh, friction=Friction.coulomb(0.3), steps=steps, coupling=coupling)
     found = mfv.run(scene)
@@ -131,6 +131,11 @@ def check_against_events(points: int, seed: int, coupling: str) -> None:
 @pytest.mark.parametrize("seed", range(4))
 def test_random_surfaces_against_events(seed: int, coupling: str) -> None:
     check_against_events(320, seed, coupling)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_few_nodes_against_events(seed: int) -> None:
+    check_against_events(384, seed, "none", force=0.03)
 
 
 @pytest.mark.skipif("MFV_DEEP" not in os.environ, reason="takes minutes: MFV_DEEP=1")
