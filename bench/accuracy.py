@@ -251,7 +251,7 @@ in whole nodes.
 
 *accuracy: on fine meshes, and under constant pressures.* For Mindlin with {mindlin_leaps["contact"]} nodes in contact large increments take {duration(mindlin_leaps["seconds"])} where events take {duration(mindlin_events["seconds"])}, with
 errors of the shear of {mindlin_leaps["error"]["shear"]:.1e} and {mindlin_events["error"]["shear"]:.1e}, of the dissipation of {mindlin_leaps["error"]["dissipation"]:.1e} and {mindlin_events["error"]["dissipation"]:.1e}. With coupling they pay from about 400 nodes
-on ([above](#against-contact)); on the coupled scene of the second picture, with `stepping='leap'`, they cost more than events, which `stepping='auto'` takes there.
+on ([below](#against-contact)); on the coupled scene of the second picture, with `stepping='leap'`, they cost more than events, which `stepping='auto'` takes there.
 
 *coupling: physics, not speed.* `goodman` takes {_time(goodman)} in place of {_time(base)} and is wrong by {_knob(goodman, "pressure")} in pressure, {_knob(goodman, "shear")} in shear and {_knob(goodman, "dissipation")} in dissipation; `none`
 {_time(none)}, {_knob(none, "pressure")}, {_knob(none, "shear")} and {_knob(none, "dissipation")}. Those errors are larger than those of all but the coarsest meshes.
