@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from events import BODIES, MU, PRESS
-from harness import Bench, Case, Tractions, duration, number, stamp, table
+from harness import Bench, Case, Tractions, duration, number, stamp
 from matplotlib import pyplot
 
 from mfv import reference
@@ -235,7 +235,7 @@ def section(data: dict[str, Any], pictures: Path) -> str:
     return f"""## Speed against accuracy: which knob first?
 
 Two pictures: errors against closed forms (Mindlin: pressed without friction, sheared to Q, -Q, Q, decoupled; Spence: pressed with friction, mu = {SPENCE_MU},
-Goodman), and every knob on a scene where the path matters (pressed with friction, sheared to Q, -Q, Q, full coupling, nu = {POISSON},
+Goodman), and every knob on a scene where the path matters ({data["contact"]} nodes in contact, pressed with friction, sheared to Q, -Q, Q, full coupling, nu = {POISSON},
 mu = {MU}, Q = {SHEAR / (MU * PRESS):g} mu P) against {data["finest"]} nodes in contact. Tractions by the l2 norm over the nodes, the stick ratio in parts of the contact, which comes
 in whole nodes.
 
@@ -251,7 +251,7 @@ in whole nodes.
 
 *accuracy: on fine meshes, and under constant pressures.* For Mindlin with {mindlin_leaps["contact"]} nodes in contact large increments take {duration(mindlin_leaps["seconds"])} where events take {duration(mindlin_events["seconds"])}, with
 errors of the shear of {mindlin_leaps["error"]["shear"]:.1e} and {mindlin_events["error"]["shear"]:.1e}, of the dissipation of {mindlin_leaps["error"]["dissipation"]:.1e} and {mindlin_events["error"]["dissipation"]:.1e}. With coupling they pay from about 400 nodes
-on ([above](#against-contact)); on the coupled scene below, with `stepping='leap'`, they cost more than events, which `stepping='auto'` takes there.
+on ([below](#against-contact)); on the coupled scene of the second picture, with `stepping='leap'`, they cost more than events, which `stepping='auto'` takes there.
 
 *coupling: physics, not speed.* `goodman` takes {_time(goodman)} in place of {_time(base)} and is wrong by {_knob(goodman, "pressure")} in pressure, {_knob(goodman, "shear")} in shear and {_knob(goodman, "dissipation")} in dissipation; `none`
 {_time(none)}, {_knob(none, "pressure")}, {_knob(none, "shear")} and {_knob(none, "dissipation")}. Those errors are larger than those of all but the coarsest meshes.
@@ -260,15 +260,10 @@ on ([above](#against-contact)); on the coupled scene below, with `stepping='leap
 
 *stepping='nominal': no trade.* With load_step {nominal["label"]:g} the same states ({_knob(nominal, "shear")} in shear) in {_time(nominal)}: for comparison with the dissertation.
 
-*Events together: removed.* An `event_tolerance`, a part of the load step within which nodes changed their status together, saved nothing as long as the error
-of the shear stayed below 1e-4.
-
 *algorithm='conventional': for comparison.* {conventional_text(conventional, knobs["conventional"])} An MFV run takes {_time(base)} and has no load step to choose.
 
 *kernel='fourier', harmonics: none.* On a disk of {CIRCLE} intervals the exact kernel takes {_time(data["harmonics"][0])} for the run; {few["label"]} harmonics an interval {_time(few)} with {_knob(few, "shear")} wrong in shear, {many["label"]} {_time(many)} with
 {_knob(many, "shear")}.
-
-{knob_table(data)}
 """
 
 
@@ -309,23 +304,6 @@ def conventional_text(done: list[dict[str, Any]], tried: list[dict[str, Any]]) -
         for entry in done
     ]
     return text + f"{'; '.join(words).capitalize()}."
-
-
-def knob_table(data: dict[str, Any]) -> str:
-    """Time of every setting, and its difference from events on the same mesh."""
-    entries = [("events, auto", data["base"])]
-    for name, settings in data["knobs"].items():
-        entries += [(f"{name} {entry['label']:g}", entry) for entry in settings]
-    entries += [(f"coupling {entry['label']}", entry) for entry in data["coupling"]]
-    rows = []
-    for name, entry in entries:
-        if entry["outcome"] != 0:
-            rows.append([name, "ends early", *[""] * 6])
-            continue
-        differences = [f"{entry['knob'][quantity]:.0e}" for quantity in QUANTITIES]
-        rows.append([name, _time(entry), entry["solves"], *differences, f"{entry['certificate']:.0e}"])
-    head = ["knob", "time", "solves", *QUANTITIES.values(), "certificate"]
-    return f"Coupled scene, {data['contact']} nodes in contact, differences from events on the same mesh:\n\n{table(head, rows)}"
 
 
 def draw_closed(data: dict[str, Any], path: Path) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import subprocess
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -21,19 +20,7 @@ the second power of the harmonics, and with four for each interval (dissertation
 
 ![Error over harmonics, and time over the intervals of the circle](pictures/circle_kernels.png)
 
-Relative error of the largest of the three kernels of a disk, kappa = 1.8:
-
-{error_table}
-
-Time for {window} entries, relative to the exact kernel on the same circle ({exact_seconds:.0e} s):
-
-{time_table}
-
-## What share of a run is assembly?
-
-A disk pressed and sheared on a rigid plane with friction, fully coupled, about 100 nodes in contact, dgesv:
-
-{run_table}
+Of the time of a run with dgesv and about 100 nodes in contact, assembly takes up to {exact_share:.1g} % with the exact kernel, and up to {fourier_share:.2g} % with the Fourier series (1,000 to {largest:,} intervals on the circle).
 """
 
 
@@ -56,35 +43,16 @@ def section(data: dict[str, Any], pictures: Path) -> str:
     return TEXT.format(
         window=next(row[3] for row in rows if row[0] == "kernels"),
         error_at_4=kernels[circles[-1], 4][1],
-        exact_seconds=kernels[circles[0], 0][0],
-        error_table=table(kernels, circles, multiples, lambda _, cell: f"{cell[1]:.1e}"),
-        time_table=table(kernels, circles, multiples, lambda circle, cell: f"{cell[0] / kernels[circle, 0][0]:.2g}"),
-        run_table=run_table([row[1:] for row in rows if row[0] == "run"]),
+        exact_share=largest_share(rows, "exact"),
+        fourier_share=largest_share(rows, "fourier"),
+        largest=max(int(row[1]) for row in rows if row[0] == "run"),
     )
 
 
-CellText = Callable[[int, tuple[float, float]], str]
-
-
-def table(kernels: Kernels, circles: list[int], multiples: list[int], cell_text: CellText) -> str:
-    """A row for each circle, a column for each number of harmonics."""
-    lines = [
-        "| intervals on the circle | " + " | ".join(f"{multiple} harmonics an interval" for multiple in multiples) + " |",
-        "| ---: |" + " ---: |" * len(multiples),
-    ]
-    for circle in circles:
-        cells = [kernels.get((circle, multiple)) for multiple in multiples]
-        lines.append(f"| {circle} | " + " | ".join("" if c is None else cell_text(circle, c) for c in cells) + " |")
-    return "\n".join(lines)
-
-
-def run_table(runs: list[list[str]]) -> str:
-    """Share of the assembly in whole runs."""
-    lines = ["| intervals on the circle | nodes in contact | kernel | linear solves | share of assembly |"]
-    lines.append("| ---: | ---: | --- | ---: | ---: |")
-    for circle, contact, kernel, assembly, total, solves in runs:
-        lines.append(f"| {circle} | {contact} | {kernel} | {solves} | {100 * float(assembly) / float(total):.2g} % |")
-    return "\n".join(lines)
+def largest_share(rows: list[list[str]], kernel: str) -> float:
+    """The largest share of the assembly in a whole run, per cent."""
+    runs = (row for row in rows if row[0] == "run" and row[3] == kernel)
+    return max(100.0 * float(assembly) / float(total) for _, _, _, _, assembly, total, _ in runs)
 
 
 def draw(kernels: Kernels, circles: list[int], multiples: list[int], path: Path) -> None:

@@ -2,7 +2,7 @@
 
 PYTHONPATH=python build/venv/bin/python bench/finite_element_pad.py [--folder build/pad] [--divisions 4 8 16 32]
 
-Writes the table in docs/from_fe.md; the last columns compare tractions and stresses with those of MFV under the loads of the first mesh. Needs the
+Writes the table whose numbers docs/from_fe.md has; the last columns compare tractions and stresses with those of MFV under the loads of the first mesh. Needs the
 program ccx (Debian: calculix-ccx). Files of the runs stay in the folder.
 """
 

@@ -33,8 +33,9 @@ from harness import CERTIFICATE, CERTIFICATE_DIRECT, Bench
 MODULES = {"targets": targets, "peer": peer, "events": events, "accuracy": accuracy, "circle": circle, "rough": rough}
 HEAD = """# Performance
 
-Written by `bench/measure.py`; do not edit. Counts do not depend on the machine. Times are of one machine ({machine}) with one thread, the least
-of several runs: compare them with each other, not with yours. Measured: {dates}.
+How long a case takes, which knob to turn first, and how MFV compares with other programs; from [targets](#targets) on for developers. Written by `bench/measure.py`; do not edit. Times are of one machine
+({machine}) with one thread, the least of several runs: compare them with each other, not with yours. Measured:
+{dates}.
 
 Every run has to be complete, with a certificate below {direct:.0e} ({iterative:.0e} with fft, 0.01 of the accuracy of large increments): {gate}
 """
@@ -78,10 +79,10 @@ def page(results: dict[str, Any], pictures: Path) -> str:
     """All sections with numbers."""
     pictures.mkdir(parents=True, exist_ok=True)
     parts = [head(results)]
-    if "targets" in results:
-        parts.append(targets.section(results["targets"], results.get("long")))
-    for name in ("peer", "rough", "events", "accuracy", "circle"):
-        if name in results:
+    for name in ("accuracy", "peer", "rough", "targets", "events", "circle"):
+        if name == "targets" and name in results:
+            parts.append(targets.section(results[name], results.get("long")))
+        elif name in results:
             parts.append(MODULES[name].section(results[name], pictures))
     return "\n".join(part.strip("\n") + "\n" for part in parts)
 

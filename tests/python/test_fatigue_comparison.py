@@ -52,9 +52,11 @@ def test_the_template_is_a_table_whose_row_is_not_counted(tmp_path, capsys, monk
         assert words in capsys.readouterr().err
 
 
-def test_columns_are_documented(capsys):
+def test_every_column_is_printed_by_the_command_that_the_page_names(capsys):
     assert main(["fatigue", "--columns"]) == 0
-    assert capsys.readouterr().out.strip() in (ROOT / "docs/fatigue.md").read_text()
+    printed = capsys.readouterr().out
+    assert all(f"| `{name}` |" in printed for name in comparison.COLUMNS)
+    assert "`mfv fatigue --columns`" in (ROOT / "docs/fatigue.md").read_text()
 
 
 @pytest.fixture(scope="module")

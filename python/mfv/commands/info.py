@@ -90,14 +90,14 @@ def description(result: Result) -> str:
 
 def _lines(group: Group) -> list[str]:
     """The scalars of a group, one per line."""
-    return [f"  {name:26}{group[name]:<14.6g}{unit(group.unit(name)):16}{group.description(name)}" for name in group]
+    return [f"  {name:25} {group[name]:<14.6g}{unit(group.unit(name)):16}{group.description(name)}" for name in group]
 
 
 def _bars(estimate: Group) -> list[str]:
     """The quantities of an error estimate with their error bars, one per line."""
     names = [name for name in estimate if f"{name}_error" in estimate]
     return [
-        f"  {name:26}{estimate[name]:<14.6g}+- {estimate[name + '_error']:<11.2g}{unit(estimate.unit(name)):16}"
+        f"  {name:25} {estimate[name]:<14.6g}+- {estimate[name + '_error']:<11.2g}{unit(estimate.unit(name)):16}"
         f"order {estimate[name + '_order']:.2g}"
         for name in names
     ]

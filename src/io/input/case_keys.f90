@@ -235,8 +235,7 @@ contains
       type(catalogue_type), intent(inout) :: keys
       character(*), intent(in) :: name, meaning
 
-      call keys%add('friction', name, kind_real, meaning//'; one value, or one per node of a mesh with half_width, '// &
-                    'half_angle or ends', lower=0.0_wp)
+      call keys%add('friction', name, kind_real, meaning//'; one value, or one per node', lower=0.0_wp)
       keys%keys(keys%size)%is_list = .true.
    end subroutine add_coefficient_key
 
@@ -302,7 +301,7 @@ contains
       subroutine add_history_key(name, unit)
          character(*), intent(in) :: name, unit
 
-         call keys%add('history', name, kind_real, 'as in &step, one value per turning point, or one for all', unit=unit)
+         call keys%add('history', name, kind_real, 'as in &step', unit=unit)
          if (name == 'force_ratio') keys%keys(keys%size)%lower = -1.0e6_wp
          if (name == 'force_ratio') keys%keys(keys%size)%upper = 1.0e6_wp
          keys%keys(keys%size)%is_list = .true.
