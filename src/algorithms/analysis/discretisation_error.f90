@@ -580,8 +580,7 @@ contains
          if (simulation%marks(mark)%step == 0) return
          of_behaviour = allowances_of_behaviours(simulation, simulation%padded(simulation%marks(mark)))
          where (index(observables%name, ending) > 0 .or. mark /= mark_loading .and. &
-                (observables%name == 'smallest_stick_ratio' .or. observables%name == 'largest_stick_ratio') .or. &
-                observables%name == 'permanent_stick_length') &
+                (observables%name == 'smallest_stick_ratio' .or. observables%name == 'largest_stick_ratio')) &
             allowances = max(allowances, of_behaviour(observables%error))
       end subroutine take_turning_point
 
@@ -709,23 +708,20 @@ contains
       end associate
    end function allowances_of_behaviours
 
-   !> Length over which neighbouring nodes are held next to their friction limit, by no more than the interval over the length of
-   !> the contact, which is the order of the error of tractions: on another mesh they may slip. A single node may be so near to
-   !> any edge. Nodes that have just reached it, as at the end of a closed cycle, rest there on any mesh if pressures do not shear;
-   !> else the cycle closes on one mesh, and they slip a little on another one.
+   !> Length over which neighbouring nodes are held next to their friction limit: on a slightly different mesh they may slip. A
+   !> single node may be so near to any edge; and nodes that have just reached it, as at the end of a closed cycle, rest
+   !> there on any mesh.
    real(wp) function marginal_length(model, state) result(length)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
-      real(wp) :: margin
+      real(wp), parameter :: least_margin = 0.002_wp
       type(zone_type), allocatable :: runs(:)
       integer :: i
 
       length = 0.0_wp
       if (.not. model%tangential .or. .not. allocated(model%scene%friction%law)) return
-      margin = contact_interval(model, state)/max(sum(model%width, mask=in_contact(state%status)), model%interval())
       associate (limit => model%static_friction*state%fields%pressure, shear => abs(state%fields%shear))
-         runs = zones_of(holds(state%status) .and. shear > (1.0_wp - margin)*limit .and. &
-                         (shear < (1.0_wp - certified)*limit .or. model%couples(block_up)))
+         runs = zones_of(holds(state%status) .and. shear > (1.0_wp - least_margin)*limit .and. shear < (1.0_wp - certified)*limit)
       end associate
       do i = 1, size(runs)
          if (runs(i)%last > runs(i)%first) length = length + sum(model%width(runs(i)%first:runs(i)%last))

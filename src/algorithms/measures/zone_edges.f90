@@ -275,7 +275,7 @@ contains
       associate (shift => state%fields%motion(motion_shift), tangential => state%fields%tangential)
          scale = max(maxval(abs(tangential)), abs(shift))
          held = holds(state%status) .or. (slips(state%status) .and. &
-                                          abs(tangential - shift - state%stuck_slip) <= significant*scale)
+                                          abs(tangential - shift - state%stuck_slip) <= certified*scale)
       end associate
       if (.not. any(holds(state%status)) .and. count(held) <= last_before_sliding) held = .false.
    end function held
