@@ -250,7 +250,7 @@ contains
    subroutine check_patches(simulation, unresolved)
       type(simulation_type), intent(in) :: simulation
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
-      character(:), allocatable :: why, advice
+      character(:), allocatable :: why, advice, names
       type(zone_type) :: patch
       integer :: nodes, patches
 
@@ -265,7 +265,10 @@ contains
          advice = ''
          call advise_on_heights(model%scene%lower, 'lower', advice)
          call advise_on_heights(model%scene%upper, 'upper', advice)
-         call add_unresolved(unresolved, all_quantities(simulation), why, advice//'use '// &
+         names = trim(all_quantities(simulation))
+         ! They depend on whether the outermost nodes slip.
+         if (model%couples(block_wt)) names = names//' left_edge_exponent right_edge_exponent'
+         call add_unresolved(unresolved, names, why, advice//'use '// &
                              trim(needed_mesh(model, simulation%contact%state, sum(model%width(patch%first:patch%last)), &
                                               fewest_patch_nodes))//' for '// &
                              to_text(fewest_patch_nodes)//' nodes in each patch')

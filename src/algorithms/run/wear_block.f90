@@ -52,6 +52,9 @@ module mfv_wear_block
       integer :: cycles = 1
       !> Depth of the wear of the block, and of its first cycle: length, shape (nodes).
       real(wp), allocatable :: depth(:), first(:)
+      !> What the depth has more than half of the wear per cycle at the start and at the end of the block, times its cycles: length,
+      !> shape (nodes); 0 if it is found in one step.
+      real(wp), allocatable :: bend(:)
       !> Predicted change of the pressures or of the wear over the block, see change_of.
       real(wp) :: change = 0.0_wp
       type(problem_type), private :: problem
@@ -62,26 +65,28 @@ module mfv_wear_block
 contains
 
    !> A block from the friction work per unit of surface of its first cycle, whose end is the present state. `cycles`: their number;
-   !> 0: as many as the predicted change allows, at most `most`. `presses`: whether the normal force is given. The contact may
-   !> reach the end of the mesh: wear beyond it is missing.
-   subroutine find_wear_block(path, work, cycles, most, presses, block)
+   !> 0: as many as the predicted change allows, at most `most`. `presses`: whether the normal force is given. `correction`: depth
+   !> that the surfaces wear by besides, at once, length, shape (nodes). The contact may reach the end of the mesh: wear beyond it
+   !> is missing.
+   subroutine find_wear_block(path, work, cycles, most, presses, block, correction)
       type(contact_path_type), intent(in) :: path
       real(wp), intent(in) :: work(:)
       integer, intent(in) :: cycles, most
       logical, intent(in) :: presses
       type(wear_block_type), intent(out) :: block
+      real(wp), intent(in), optional :: correction(:)
       integer, parameter :: most_trials = 20
       real(wp), parameter :: safety = 0.9_wp, smallest = 0.1_wp
       real(wp), allocatable :: pressure(:)
       real(wp) :: worn
       integer :: trial, margin, n
 
-      allocate (block%depth(size(work)), block%first(size(work)), source=0.0_wp)
+      allocate (block%depth(size(work)), block%first(size(work)), block%bend(size(work)), source=0.0_wp)
       block%cycles = merge(cycles, most, cycles > 0)
       margin = size(work)/8
       block%problem%presses = presses
       worn = path%model%force(path%state%worn)/path%model%length()**2
-      call gather(path, work, margin, block%problem)
+      call gather(path, work, margin, block%problem, correction)
       if (size(block%problem%node) == 0) return
       associate (tolerance => path%model%scene%wear%tolerance, problem => block%problem)
          do trial = 1, most_trials
@@ -90,17 +95,59 @@ contains
                n = size(pressure)
                if (max(pressure(1), pressure(n)) <= 0.0_wp .or. margin >= size(work)) exit
                margin = 2*margin + 1
-               call gather(path, work, margin, problem)
+               call gather(path, work, margin, problem, correction)
             end do
             block%change = change_of(problem, block%cycles, pressure, worn)
             if (cycles > 0 .or. block%cycles == 1 .or. block%change <= tolerance) exit
             block%cycles = max(1, int(max(smallest, safety*tolerance/block%change)*block%cycles))
          end do
-         block%depth(problem%node) = block%cycles*problem%softness*pressure*problem%length
-         if (block%cycles > 1) call solve(problem, 1.0_wp, pressure)
-         block%first(problem%node) = problem%softness*pressure*problem%length
+         if (block%cycles == 1) then
+            block%depth(problem%node) = problem%softness*pressure*problem%length
+            block%first = block%depth
+         else
+            call wear_off(block, steps_for(problem, pressure))
+         end if
       end associate
    end subroutine find_wear_block
+
+   !> Number of steps in which the depth of a block is found: in each the edges of the contact move outwards by about an interval,
+   !> since what is touched during a step wears as if it had been in contact from its start. `pressure`: at the end of the
+   !> block, shape (nodes of the problem).
+   pure integer function steps_for(problem, pressure) result(steps)
+      type(problem_type), intent(in) :: problem
+      real(wp), intent(in) :: pressure(:)
+      integer, parameter :: most = 100
+
+      steps = min(max(1, count(pressure > 0.0_wp .and. .not. problem%pressure > 0.0_wp)/2), most)
+   end function steps_for
+
+   !> Find the depth of a block and of its first cycle by `steps` equal steps, each under the pressures at its end.
+   subroutine wear_off(block, steps)
+      type(wear_block_type), intent(inout) :: block
+      integer, intent(in) :: steps
+      type(problem_type) :: problem
+      real(wp), allocatable :: pressure(:), wear(:), first(:)
+      real(wp) :: cycles
+      integer :: i
+
+      problem = block%problem
+      cycles = real(block%cycles, wp)/steps
+      call solve(problem, 1.0_wp, pressure)
+      first = problem%softness*pressure
+      allocate (wear(size(first)), source=0.0_wp)
+      do i = 1, steps
+         call solve(problem, cycles, pressure)
+         wear = wear + cycles*problem%softness*pressure
+         problem%opening = problem%opening + cycles*problem%softness*pressure
+         problem%pressure = pressure
+      end do
+      associate (node => problem%node, length => problem%length)
+         block%first(node) = first*length
+         block%depth(node) = wear*length
+         if (steps > 1) block%bend(node) = (wear + 0.5_wp*cycles*(first - problem%softness*pressure) &
+                                            - 0.5_wp*block%cycles*(first + problem%softness*pressure))*length
+      end associate
+   end subroutine wear_off
 
    !> Judge a block by what the two cycles after it wear, `settling` and `next`, depths: length, shape (nodes), on a mesh that may
    !> have grown since. `correction`: of the depth of both the block and the cycle `settling`, length, shape (nodes). `error`: the
@@ -136,7 +183,7 @@ contains
          else
             slope = (next - first)/(n + 1.0_wp)
             call solve(problem, n, pressure)
-            correction = (n + 1.0_wp)*first + 0.5_wp*n*(n + 1.0_wp)*slope - depth - settling
+            correction = (n + 1.0_wp)*first + 0.5_wp*n*(n + 1.0_wp)*slope + widened(self%bend, size(next)) - depth - settling
             memory = 0.5_wp*n*(next - settling - slope)
          end if
          first_order = correction
@@ -203,14 +250,15 @@ contains
    end function change_of
 
    !> Gather the problem of a block, for the nodes up to `margin` nodes beyond those that slip in the cycle or are in contact;
-   !> without nodes if there are none.
-   subroutine gather(path, work, margin, problem)
+   !> without nodes if there are none. `correction`: see find_wear_block.
+   subroutine gather(path, work, margin, problem, correction)
       type(contact_path_type), intent(in) :: path
       real(wp), intent(in) :: work(:)
       integer, intent(in) :: margin
       type(problem_type), intent(inout) :: problem
+      real(wp), intent(in), optional :: correction(:)
       logical :: contact(size(work)), known(size(work))
-      real(wp) :: rate(size(work)), softness(size(work)), gap(size(work)), pressure(size(work))
+      real(wp), dimension(size(work)) :: rate, softness, beyond, gap, pressure
       integer :: i, first, last
 
       associate (model => path%model, wear => path%model%scene%wear)
@@ -227,8 +275,9 @@ contains
          do i = 1, size(work)
             if (known(i)) softness(i) = rate(i)/pressure(i)
          end do
+         beyond = at_edges(known, softness)
          do i = 1, size(problem%node)
-            if (.not. known(problem%node(i))) softness(problem%node(i)) = value_of_nearest(softness, known, problem%node(i))
+            if (.not. known(problem%node(i))) softness(problem%node(i)) = value_of_nearest(beyond, known, problem%node(i))
          end do
          gap = model%gap(path%state%fields)
          associate (length => model%length(), stress => model%compliance%modulus, node => problem%node)
@@ -242,9 +291,25 @@ contains
             call model%compliance%entries(block_wp, node, node, problem%compliance)
             problem%compliance = problem%compliance*(stress/length)
             problem%opening = merge(0.0_wp, gap(node), contact(node))/length - matmul(problem%compliance, problem%pressure)
+            if (present(correction)) problem%opening = problem%opening + correction(node)/length
          end associate
       end associate
    end subroutine gather
+
+   !> Values beyond the known ones: those at their edges, or of the nodes before them if these are larger. Nodes at the edges of the
+   !> contact that are open in a part of the cycle slip less than what the contact will have grown to. Arguments of shape (nodes).
+   pure function at_edges(known, values)
+      logical, intent(in) :: known(:)
+      real(wp), intent(in) :: values(:)
+      real(wp) :: at_edges(size(values))
+      integer :: i
+
+      at_edges = values
+      do i = 2, size(known) - 1
+         if (known(i) .and. (known(i - 1) .neqv. known(i + 1))) &
+            at_edges(i) = max(values(i), merge(values(i - 1), values(i + 1), known(i - 1)))
+      end do
+   end function at_edges
 
    !> The mean pressure of the cycle, weighted by the work, at nodes that slip, whose `rate` is above round-off; else the present
    !> pressure.

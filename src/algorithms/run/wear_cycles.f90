@@ -167,7 +167,7 @@ contains
          end if
          do
             call find_wear_block(contact, cycle_work(self), trial%cycles, most_worn_at_once(self, step), is_pressed(self), &
-                                 trial%block)
+                                 trial%block, trial%correction)
             if (.not. contact%lengthens_for(trial%block%depth > 0.0_wp)) exit
             trial%correction = widened(trial%correction, contact%model%nodes())
          end do
