@@ -191,6 +191,17 @@ contains
          return
       end if
       call fronts%assume(fields)
+      if (path%system%takes_fronts(path%state%contact_nodes())) then
+         call fronts%set_hold(hold)
+         constraints%front = fronts%of_nodes()
+         call solve_group(0)
+         deallocate (constraints%front)
+         if (solved) then
+            call fronts%assume(fields)
+            call fronts%set_hold(hold)
+            return
+         end if
+      end if
       do pass = 1, most_passes
          call fronts%set_hold(hold)
          if (pass > 1) call solve_group(0)

@@ -15,6 +15,7 @@
 !> effects of other zones are iterated.
 module mfv_sticking_front
    use mfv_contact_fields, only: contact_fields_type
+   use mfv_contact_system, only: front_type
    use mfv_kinds, only: wp
    use mfv_node_status
    use mfv_zone_edges, only: zone_type, zones_of
@@ -37,6 +38,7 @@ module mfv_sticking_front
    contains
       procedure :: number
       procedure :: set_hold
+      procedure :: of_nodes
       procedure :: group_weight
       procedure :: assume
       procedure :: correct
@@ -199,6 +201,18 @@ contains
          if (self%zone(i) > 0) hold(i) = self%base(i) + self%weight(i)*self%slip(self%group(i), self%zone(i))
       end do
    end subroutine set_hold
+
+   !> What the slip of all nodes depends on, shape (nodes).
+   pure function of_nodes(self) result(front)
+      class(fronts_type), intent(in) :: self
+      type(front_type) :: front(size(self%zone))
+      integer :: i
+
+      do i = 1, size(front)
+         if (self%zone(i) > 0) front(i) = front_type(self%outer(self%group(i), self%zone(i)), self%weight(i), &
+                                                     self%slip(self%group(i), self%zone(i)))
+      end do
+   end function of_nodes
 
    !> The change of the slip of all nodes with that of the outer nodes of a group, shape (nodes).
    pure function group_weight(self, group) result(weight)
