@@ -181,7 +181,8 @@ contains
       zones = 0
       if (present(held)) then
          associate (start => path%state%fields)
-            call find_fronts(path%state%status, held,.not. start%pressure > 0.0_wp, hold, start, path%model%gap(start), &
+            call find_fronts(path%state%status, held,.not. start%pressure > 0.0_wp, hold, start, &
+                             merge(path%model%initial_gap, path%model%gap(start), in_proportion), &
                              ahead, in_proportion, fronts)
          end associate
          zones = count(any(fronts%outer > 0, dim=1))
