@@ -50,22 +50,19 @@ module mfv_krylov_preconditioner
 contains
 
    !> Prepare for a compliance, whose number of nodes may have changed, or its blocks, with the first step with friction. `unit`: of
-   !> the entries of the blocks, length^3/force. `renewed`: whether all inverses are to be set anew.
-   subroutine prepare(self, compliance, unit, renewed)
+   !> the entries of the blocks, length^3/force.
+   subroutine prepare(self, compliance, unit)
       class(krylov_preconditioner_type), intent(inout) :: self
       class(compliance_type), intent(in) :: compliance
       real(wp), intent(in) :: unit
-      logical, intent(out) :: renewed
       logical :: layers
 
-      renewed = .false.
       layers = compliance%by_distance .and. .not. compliance%is_homogeneous
       if (allocated(self%kernel)) then
          if ((2*compliance%nodes <= size(self%kernel) .or. (layers .and. size(self%kernel) == compliance%nodes)) .and. &
              (self%has_shear .eqv. compliance%has_block(block_ut))) return
          deallocate (self%kernel)
       end if
-      renewed = .true.
       if (allocated(self%held_kernel)) deallocate (self%held_kernel)
       self%has_shear = compliance%has_block(block_ut)
       self%by_distance = compliance%by_distance

@@ -70,9 +70,7 @@ module mfv_krylov_system
       !> Whether pressures act on the rows of held nodes.
       logical :: coupled = .false.
       !> Preconditioned columns of the free motions, shape (contact + held, free), and the Schur complement, shape (free, free).
-      !> `prepared`: whether they are those of the present unknowns.
       real(wp), allocatable :: columns(:, :), schur(:, :)
-      logical :: prepared = .false.
       !> Tractions and displacements of the last product, shape (nodes); and those of the last residual: pressure, shear, normal,
       !> tangential, shape (nodes, 4).
       real(wp), allocatable :: pressure(:), shear(:), normal(:), tangential(:), found(:, :)
@@ -182,7 +180,6 @@ contains
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
       integer :: i, n
-      logical :: renewed
 
       n = model%nodes()
       if (.not. self%length > 0.0_wp) then
@@ -191,15 +188,13 @@ contains
          self%arm = [(arm_unit(i, self%length, self%stress), i=1, motion_count)]
          self%motion_unit = self%length/self%arm
       end if
-      call self%preconditioner%prepare(model%compliance, self%length/self%stress, renewed)
-      if (renewed) self%prepared = .false.
+      call self%preconditioner%prepare(model%compliance, self%length/self%stress)
       if (allocated(self%pressure)) then
          if (size(self%pressure) == n) then
             self%normal_arm(:, motion_wear) = model%normal_arm(:, motion_wear)/self%arm(motion_wear)
             return
          end if
          deallocate (self%pressure, self%shear, self%normal, self%tangential, self%found)
-         self%prepared = .false.
       end if
       allocate (self%pressure(n), self%shear(n), self%normal(n), self%tangential(n), self%found(n, 4), source=0.0_wp)
       self%normal_arm = model%normal_arm
@@ -240,15 +235,9 @@ contains
       logical, dimension(size(constraints%status)) :: is_held, follows
       real(wp), dimension(size(constraints%status)) :: stiffness
       logical :: free(motion_count)
-      integer, allocatable :: before(:)
-      real(wp), allocatable :: lines(:)
       integer :: i, n
 
       n = size(constraints%status)
-      if (self%prepared) then
-         before = [size(self%contact), self%contact, self%held, self%free]
-         lines = [self%slope, self%held_slope, self%softness]
-      end if
       follows = slips(constraints%status) .or. creeps(constraints%status)
       stiffness = 0.0_wp
       where (follows) stiffness = constraints%row%stiffness*(self%length/self%stress)
@@ -272,12 +261,6 @@ contains
       free = constraints%load%control == control_force .and. model%moves
       free(motion_shift) = free(motion_shift) .and. (any(is_held) .or. any(follows))
       self%free = pack([(i, i=1, motion_count)], free)
-      if (.not. self%prepared) return
-      associate (now => [size(self%contact), self%contact, self%held, self%free], &
-                 lines_now => [self%slope, self%held_slope, self%softness])
-         self%prepared = size(now) == size(before) .and. size(lines_now) == size(lines)
-         if (self%prepared) self%prepared = all(now == before) .and. .not. any(abs(lines_now - lines) > 0.0_wp)
-      end associate
    end subroutine choose_unknowns
 
    !> Prepare the preconditioner for these unknowns. `singular`: the free motions are not determined.
@@ -289,8 +272,6 @@ contains
       real(wp) :: scaled(size(self%free), size(self%free))
       integer :: i, j, m
 
-      singular = .false.
-      if (self%prepared) return
       call self%preconditioner%set_contact(self%contact)
       call self%preconditioner%set_held(self%held, self%softness)
       m = size(self%contact)
@@ -305,6 +286,7 @@ contains
             self%schur(i, j) = resultant(self, self%free(i))
          end do
       end do
+      singular = .false.
       do j = 1, size(self%free)
          do i = 1, size(self%free)
             singular = singular .or. .not. abs(self%schur(i, i)*self%schur(j, j)) > 0.0_wp
@@ -312,7 +294,6 @@ contains
          end do
       end do
       if (.not. singular) singular = smallest_pivot(scaled) < no_pivot
-      self%prepared = .not. singular
    end subroutine prepare_preconditioner
 
    !> The smallest pivot of a small matrix by complete elimination.
@@ -374,8 +355,7 @@ contains
       real(wp), intent(inout) :: unknowns(:)
       logical, intent(out) :: fails
       real(wp), intent(out) :: error
-      real(wp), parameter :: worth_keeping = 0.5_wp, progress = 0.5_wp, near_enough = 2.0_wp, &
-                             drift = 1.0e-10_wp
+      real(wp), parameter :: progress = 0.5_wp, near_enough = 2.0_wp, drift = 1.0e-10_wp
       real(wp) :: rows(size(unknowns)), reached, before, scale, target
       integer :: pass
       logical :: done, checked
@@ -396,8 +376,6 @@ contains
          reached = norm2(rows)
          fails = .not. ieee_is_finite(reached)
          if (fails) return
-         if (pass == 1 .and. reached > worth_keeping*norm2(unknowns) .and. any(abs(unknowns) > 0.0_wp)) &
-            call try_zero(self, model, right, unknowns, rows, reached)
          scale = norm2(unknowns)
          if (.not. scale > 0.0_wp) scale = reached
          target = target_of(self, right, tolerance*scale)
@@ -428,26 +406,6 @@ contains
       if (any(self%softness < 0.0_wp)) part = of_weakening
       target = max(part*error, round_off(self, right))
    end function target_of
-
-   !> Start from zero if the residual, `reached`, is then smaller. `rows`: the preconditioned residual.
-   subroutine try_zero(self, model, right, unknowns, rows, reached)
-      class(krylov_system_type), intent(inout) :: self
-      type(contact_model_type), intent(in) :: model
-      type(right_side_type), intent(in) :: right
-      real(wp), intent(inout) :: unknowns(:), rows(:), reached
-      real(wp) :: of_zero(size(rows)), zero(size(rows))
-
-      zero = 0.0_wp
-      call find_residual(self, model, right, zero, of_zero)
-      call precondition(self, model, of_zero)
-      if (norm2(of_zero) < reached) then
-         unknowns = zero
-         rows = of_zero
-         reached = norm2(rows)
-      else
-         call find_residual(self, model, right, unknowns, of_zero)
-      end if
-   end subroutine try_zero
 
    !> Set the residuals of pressures to zero if they are within the `target`, and those of motions without tangential displacements,
    !> so that what does not change costs nothing: without normal displacements by shear pressures are constant under a changing

@@ -730,7 +730,7 @@ contains
       integer, parameter :: smooth_from = 8
       real(wp) :: smooth, corners, difference, change, by_rates, error
 
-      call chain_dissipation(path%model, finer%before(1)%fields, finer%after, finer%begins, finer%changes, smooth, corners)
+      call chain_dissipation(path%model, finer%before(1)%fields, finer%after, finer%changes, smooth, corners)
       finer%by_slopes = smooth
       difference = abs(smooth - finer%node_wise)
       finer%work = 0.5_wp*(max(smooth, 0.0_wp) + finer%node_wise)
