@@ -496,8 +496,8 @@ contains
       call path%set_status(in_contact(path%state%status), status)
    end subroutine guess_slip
 
-   !> A first guess of the statuses after a normal force has grown: zones about the middle of the contact that have grown with it, as
-   !> under a cylinder.
+   !> A first guess of the statuses after a normal force has grown: zones about the middle of the contact that have grown with it,
+   !> as under a cylinder.
    subroutine guess_growth(path, interval)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval

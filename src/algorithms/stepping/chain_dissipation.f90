@@ -42,9 +42,9 @@ module mfv_chain_dissipation
 contains
 
    !> The friction dissipation from the fields `start` through the fields `after`, evenly spaced on a smooth path, shape
-   !> (increments), a power of two; force. `corners`: the error due to corners, one for each of the `changes` of status. (A corner is
-   !> taken for part of a parabola: an error of random sign, on average 0.4 of that of the trapezoidal rule if all corners share the
-   !> curvature.)
+   !> (increments), a power of two; force. `corners`: the error due to corners, one for each of the `changes` of status. (A corner
+   !> is taken for part of a parabola: an error of random sign, on average 0.4 of that of the trapezoidal rule if all corners share
+   !> the curvature.)
    subroutine chain_dissipation(model, start, after, changes, work, corners)
       class(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: start, after(:)
