@@ -8,8 +8,8 @@ module mfv_contact_system
    use mfv_motions, only: motions, motion_count, control_force, control_displacement
    implicit none
    private
-   public :: contact_system_type, solver_work_type, load_type, response_type, constraints_type, prescribed_type, find_prescribed, &
-             initial_loads
+   public :: contact_system_type, solver_work_type, load_type, front_type, response_type, constraints_type, prescribed_type, &
+             find_prescribed, initial_loads
    public :: rates_of_loads, rates_at_end, rates_of_fronts, rates_of_derivatives, kinds_of_rates
 
    !> Kinds of rates: of the loads, of the loads at states of large increments, and with the slip of fronts to the left and right;
@@ -29,12 +29,22 @@ module mfv_contact_system
    type(load_type), parameter :: initial_loads(motion_count) = &
                          [(load_type(merge(control_displacement, control_force, motions(motion)%optional)), motion=1, motion_count)]
 
+   !> A stuck node holds at a slip that changes with that of another node, of any status, by the factor `weight`. `node`: that
+   !> node, 0: none; `slip`: its slip at which the stuck node holds at its own `stuck_slip`, length.
+   type :: front_type
+      integer :: node = 0
+      real(wp) :: weight = 0.0_wp, slip = 0.0_wp
+   end type front_type
+
    !> The equality constraints of all nodes (dissertation Table 2.1).
    type :: constraints_type
       !> Statuses, see mfv_node_status, shape (nodes).
       integer, allocatable :: status(:)
       !> Slip s at which a stuck node holds, length, shape (nodes).
       real(wp), allocatable :: stuck_slip(:)
+      !> What the slip of stuck nodes depends on, shape (nodes); not allocated: nothing. Only for solvers that take it
+      !> (takes_fronts).
+      type(front_type), allocatable :: front(:)
       !> The lines tau = slope*p + stiffness*s + offset of slipping and creeping nodes (mfv_friction_law), and the rate of
       !> the offset per unit of load; shape (nodes).
       type(friction_row_type), allocatable :: row(:)
@@ -85,6 +95,7 @@ module mfv_contact_system
       logical :: gave_up = .false.
    contains
       procedure(solve_interface), deferred :: solve
+      procedure :: takes_fronts
    end type contact_system_type
 
    abstract interface
@@ -103,6 +114,14 @@ module mfv_contact_system
    end interface
 
 contains
+
+   !> Whether the constraints may have fronts, with a number of nodes in `contact`.
+   logical function takes_fronts(self, contact)
+      class(contact_system_type), intent(in) :: self
+      integer, intent(in) :: contact
+
+      takes_fronts = .false.
+   end function takes_fronts
 
    !> The prescribed values of the state of a model, or (`rates`) of its rates. `prescribed`: its storage is reused.
    pure subroutine find_prescribed(constraints, model, rates, prescribed)

@@ -9,6 +9,8 @@
 !>     C_up p + C_ut tau - a_u y + c (tau - slope p) = c offset  tau = slope*p + stiffness*s + offset, softness c = -1/stiffness
 !>     resultants of p and tau                = P, Q, M          free motions
 !>
+!> The row of a stuck node at a front has w times the slip of another node subtracted on both sides (front_type).
+!>
 !> The preconditioner is block triangular: pressures by the inverse of C_wp (mfv_krylov_preconditioner), then shear tractions by
 !> that of C_ut after subtracting the effect of these pressures; the free motions follow from a Schur complement of at most three
 !> rows. GMRES is applied to the preconditioned rows: up to the coupling its residual is the error of the unknowns, and
@@ -63,6 +65,8 @@ module mfv_krylov_system
       real(wp), allocatable :: slope(:)
       !> Softness and slope of the held nodes, shape (held).
       real(wp), allocatable :: softness(:), held_slope(:)
+      !> What the slip of the held nodes depends on, in the units of the system, shape (held); not allocated: nothing.
+      type(front_type), allocatable :: front(:)
       !> Whether pressures act on the rows of held nodes.
       logical :: coupled = .false.
       !> Preconditioned columns of the free motions, shape (contact + held, free), and the Schur complement, shape (free, free).
@@ -76,6 +80,7 @@ module mfv_krylov_system
       type(reduced_system_type), allocatable :: direct
    contains
       procedure :: solve
+      procedure :: takes_fronts
    end type krylov_system_type
 
    !> Most nodes in contact for the reduced system where the iteration fails: 200 MB.
@@ -87,7 +92,16 @@ module mfv_krylov_system
 
 contains
 
-   !> See mfv_contact_system. Where the iteration fails, the reduced system takes over, unless its matrix would be too large.
+   !> See mfv_contact_system.
+   logical function takes_fronts(self, contact)
+      class(krylov_system_type), intent(in) :: self
+      integer, intent(in) :: contact
+
+      takes_fronts = .true.
+   end function takes_fronts
+
+   !> See mfv_contact_system. Where the iteration fails, the reduced system takes over, unless there are fronts or its matrix would
+   !> be too large.
    subroutine solve(self, model, constraints, start, response, singular)
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -99,7 +113,7 @@ contains
       self%solves = self%solves + 1
       self%gave_up = .false.
       call solve_by_iteration(self, model, constraints, start, response, singular)
-      if (.not. singular) return
+      if (.not. singular .or. allocated(self%front)) return
       self%gave_up = size(self%contact) > most_direct
       if (self%gave_up) return
       if (.not. allocated(self%direct)) allocate (self%direct)
@@ -131,6 +145,11 @@ contains
       else
          call find_prescribed(constraints, model, .false., prescribed)
          right = right_side(self, model, constraints%status, prescribed)
+         if (allocated(self%front)) then
+            associate (rows => right%rows(size(self%contact) + 1:size(self%contact) + size(self%held)))
+               rows = rows - self%front%weight*self%front%slip
+            end associate
+         end if
          unknowns = [start%pressure(self%contact)/self%stress, start%shear(self%held)/self%stress, &
                      start%motion(self%free)/self%motion_unit(self%free)]
          call iterate(self, model, right, self%tolerance/margin, unknowns, fails, error)
@@ -228,6 +247,11 @@ contains
       self%held = pack([(i, i=1, n)], is_held)
       self%slope = merge(constraints%row%slope, 0.0_wp, follows .and. .not. is_held)
       self%held_slope = merge(constraints%row(self%held)%slope, 0.0_wp, follows(self%held))
+      if (allocated(self%front)) deallocate (self%front)
+      if (allocated(constraints%front)) then
+         self%front = constraints%front(self%held)
+         self%front%slip = self%front%slip/self%length
+      end if
       self%softness = 0.0_wp*self%held_slope
       where (follows(self%held)) self%softness = -1.0_wp/stiffness(self%held)
       self%coupled = model%compliance%has_block(block_up) .or. any(abs(self%slope) > 0.0_wp) .or. &
@@ -331,8 +355,7 @@ contains
       real(wp), intent(inout) :: unknowns(:)
       logical, intent(out) :: fails
       real(wp), intent(out) :: error
-      real(wp), parameter :: worth_keeping = 0.5_wp, progress = 0.5_wp, near_enough = 2.0_wp, &
-                             drift = 1.0e-10_wp
+      real(wp), parameter :: progress = 0.5_wp, near_enough = 2.0_wp, drift = 1.0e-10_wp
       real(wp) :: rows(size(unknowns)), reached, before, scale, target
       integer :: pass
       logical :: done, checked
@@ -353,8 +376,6 @@ contains
          reached = norm2(rows)
          fails = .not. ieee_is_finite(reached)
          if (fails) return
-         if (pass == 1 .and. reached > worth_keeping*norm2(unknowns) .and. any(abs(unknowns) > 0.0_wp)) &
-            call try_zero(self, model, right, unknowns, rows, reached)
          scale = norm2(unknowns)
          if (.not. scale > 0.0_wp) scale = reached
          target = target_of(self, right, tolerance*scale)
@@ -385,26 +406,6 @@ contains
       if (any(self%softness < 0.0_wp)) part = of_weakening
       target = max(part*error, round_off(self, right))
    end function target_of
-
-   !> Start from zero if the residual, `reached`, is then smaller. `rows`: the preconditioned residual.
-   subroutine try_zero(self, model, right, unknowns, rows, reached)
-      class(krylov_system_type), intent(inout) :: self
-      type(contact_model_type), intent(in) :: model
-      type(right_side_type), intent(in) :: right
-      real(wp), intent(inout) :: unknowns(:), rows(:), reached
-      real(wp) :: of_zero(size(rows)), zero(size(rows))
-
-      zero = 0.0_wp
-      call find_residual(self, model, right, zero, of_zero)
-      call precondition(self, model, of_zero)
-      if (norm2(of_zero) < reached) then
-         unknowns = zero
-         rows = of_zero
-         reached = norm2(rows)
-      else
-         call find_residual(self, model, right, unknowns, of_zero)
-      end if
-   end subroutine try_zero
 
    !> Set the residuals of pressures to zero if they are within the `target`, and those of motions without tangential displacements,
    !> so that what does not change costs nothing: without normal displacements by shear pressures are constant under a changing
@@ -490,7 +491,7 @@ contains
       integer :: m, s
 
       call spread_tractions(self, unknowns)
-      exact = self%preconditioner%is_exact()
+      exact = self%preconditioner%is_exact() .and. .not. allocated(self%front)
       if (exact) then
          m = size(self%contact)
          s = size(self%held)
@@ -557,6 +558,14 @@ contains
       end associate
       do i = 1, size(self%free)
          rows(m + s + i) = resultant(self, self%free(i))
+      end do
+      if (.not. allocated(self%front)) return
+      do i = 1, s
+         associate (front => self%front(i))
+            if (front%node > 0) &
+               rows(m + i) = rows(m + i) - front%weight*(self%tangential(front%node) &
+                                                         - dot_product(self%tangential_arm(front%node, :), motion))
+         end associate
       end do
    end subroutine collect_rows
 

@@ -180,7 +180,8 @@ contains
       zones = 0
       if (present(held)) then
          associate (start => path%state%fields)
-            call find_fronts(path%state%status, held,.not. start%pressure > 0.0_wp, hold, start, path%model%gap(start), &
+            call find_fronts(path%state%status, held,.not. start%pressure > 0.0_wp, hold, start, &
+                             merge(path%model%initial_gap, path%model%gap(start), in_proportion), &
                              ahead, in_proportion, fronts)
          end associate
          zones = count(any(fronts%outer > 0, dim=1))
@@ -190,6 +191,17 @@ contains
          return
       end if
       call fronts%assume(fields)
+      if (path%system%takes_fronts(path%state%contact_nodes())) then
+         call fronts%set_hold(hold)
+         constraints%front = fronts%of_nodes()
+         call solve_group(0)
+         deallocate (constraints%front)
+         if (solved) then
+            call fronts%assume(fields)
+            call fronts%set_hold(hold)
+            return
+         end if
+      end if
       do pass = 1, most_passes
          call fronts%set_hold(hold)
          if (pass > 1) call solve_group(0)

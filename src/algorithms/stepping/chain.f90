@@ -98,6 +98,7 @@ contains
          status = path%state%status
          if (chain%fronts) held = holding_before(chain, start, i)
          by_pressure = .false.
+         if (chain%fronts .and. .not. (chain%begins .or. present(coarser))) call guess_growth(path, interval)
          chain%after(i) = path%state%fields
          if (i == 1) call guess_slip(path, interval, reached(chain, i), chain%after(i), by_pressure, held)
          known = .false.
@@ -304,8 +305,39 @@ contains
       end associate
    end subroutine find_sample
 
-   !> A guess of the statuses between two states: where an edge has moved, it is midway.
+   !> A guess of the statuses between two states: edges of contact and of stick zones are midway. Nodes that slip neither before nor
+   !> after follow the nearest ones that do.
    pure function statuses_between(before, after) result(status)
+      integer, intent(in) :: before(:), after(:)
+      integer, dimension(size(before)) :: status, contact, stick
+      logical :: slipping(size(before))
+      integer :: distance, i, n
+
+      n = size(before)
+      contact = midway(merge(1, 0, in_contact(before)), merge(1, 0, in_contact(after)))
+      stick = midway(merge(1, 0, before == node_stick), merge(1, 0, after == node_stick))
+      status = merge(before, after, slips(before))
+      slipping = slips(status)
+      where (contact == 0)
+         status = node_open
+      elsewhere(stick == 1)
+         status = node_stick
+      end where
+      do i = 1, n
+         if (contact(i) == 0 .or. stick(i) == 1 .or. slipping(i)) cycle
+         status(i) = node_stick
+         do distance = 1, n - 1
+            if (any(slipping([max(i - distance, 1), min(i + distance, n)]))) exit
+         end do
+         if (distance == n) cycle
+         associate (near => merge(max(i - distance, 1), min(i + distance, n), slipping(max(i - distance, 1))))
+            status(i) = merge(before(near), after(near), slips(before(near)))
+         end associate
+      end do
+   end function statuses_between
+
+   !> The values between two states, shape (nodes): where an edge has moved, it is midway.
+   pure function midway(before, after) result(status)
       integer, intent(in) :: before(:), after(:)
       integer :: status(size(before)), first, last, half, n
       logical :: from_left, from_right
@@ -330,7 +362,7 @@ contains
          if (from_right .and. .not. from_left) status(last - half + 1:last) = after(first)
          first = last + 1
       end do
-   end function statuses_between
+   end function midway
 
    !> The dissipation of the increments node by node, from sample to sample.
    subroutine sum_samples(path, chain)
@@ -473,6 +505,24 @@ contains
       end associate
       call path%set_status(in_contact(path%state%status), status)
    end subroutine guess_slip
+
+   !> A first guess of the statuses after a normal force has grown: zones about the middle of the contact that have grown with it,
+   !> as under a cylinder.
+   subroutine guess_growth(path, interval)
+      class(contact_path_type), intent(inout) :: path
+      type(segment_type), intent(in) :: interval
+      real(wp) :: middle, growth
+      integer :: i, n, status(size(path%state%status))
+
+      n = size(status)
+      associate (load => interval%load(motion_approach), contact => in_contact(path%state%status))
+         if (load%control /= control_force .or. .not. (load%value > 0.0_wp .and. load%rate > 0.0_wp)) return
+         growth = sqrt(1.0_wp + load%rate/load%value)
+         middle = 0.5_wp*(findloc(contact, .true., dim=1) + findloc(contact, .true., dim=1, back=.true.))
+      end associate
+      status = path%state%status([(min(max(nint(middle + (i - middle)/growth), 1), n), i=1, n)])
+      call path%set_status(path%model%can_touch .or. .not. in_contact(status), status)
+   end subroutine guess_growth
 
    !> The largest pressure of the patch of each node, shape (nodes); a patch has consecutive nodes with a pressure.
    pure function largest_of_patches(pressure) result(largest)

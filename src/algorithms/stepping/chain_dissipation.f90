@@ -4,9 +4,7 @@
 !> it begins to slip, to stick or to touch. The sum is smooth: by energy it is the work of the loads less the stored energy. On an
 !> interpolated path these are -int (tau ds + p dg), with the gap g; p dg is zero on the exact path only. (The elastic part
 !> tau C dtau is integrated exactly by any interpolation, since C is symmetric.) The sum is integrated with parabolas through three
-!> states each (Simpson's rule), extrapolated once (Boole's rule, Richardson 1911). If contact begins, the approach goes as
-!> f^2 ln f with the contact half-width f, and the error of Boole's rule with the fourth power of the interval: it is extrapolated
-!> once more.
+!> states each (Simpson's rule), extrapolated once (Boole's rule, Richardson 1911).
 !>
 !> For a single node tau is mu p wherever it slips, so that its dissipation lies between its slip times the smaller and the larger
 !> limit at both ends of an increment. Under constant pressures this is exact.
@@ -44,13 +42,12 @@ module mfv_chain_dissipation
 contains
 
    !> The friction dissipation from the fields `start` through the fields `after`, evenly spaced on a smooth path, shape
-   !> (increments), a power of two; force. `begins`: whether contact begins, with increments even in the half-width. `corners`: the
-   !> error due to corners, one for each of the `changes` of status. (A corner is taken for part of a parabola: an error of random
-   !> sign, on average 0.4 of that of the trapezoidal rule if all corners share the curvature.)
-   subroutine chain_dissipation(model, start, after, begins, changes, work, corners)
+   !> (increments), a power of two; force. `corners`: the error due to corners, one for each of the `changes` of status. (A corner
+   !> is taken for part of a parabola: an error of random sign, on average 0.4 of that of the trapezoidal rule if all corners share
+   !> the curvature.)
+   subroutine chain_dissipation(model, start, after, changes, work, corners)
       class(contact_model_type), intent(in) :: model
       type(contact_fields_type), intent(in) :: start, after(:)
-      logical, intent(in) :: begins
       integer, intent(in) :: changes
       real(wp), intent(out) :: work, corners
       real(wp), parameter :: share = 0.8_wp
@@ -59,18 +56,9 @@ contains
       increments = size(after)
       work = composite(1)
       corners = share*abs(trapezoidal() - work)/sqrt(real(max(changes, 1), wp))
-      if (increments >= 4) work = boole(1)
-      if (begins .and. increments >= 8) work = work + (work - boole(2))/15.0_wp
+      if (increments >= 4) work = work + (work - composite(2))/15.0_wp
 
    contains
-
-      !> Boole's rule for every `stride`-th state.
-      real(wp) function boole(stride)
-         integer, intent(in) :: stride
-
-         boole = composite(stride)
-         boole = boole + (boole - composite(2*stride))/15.0_wp
-      end function boole
 
       !> Parabolas through every `stride`-th state; a straight line for a single interval.
       real(wp) function composite(stride)

@@ -213,7 +213,7 @@ contains
    end function is_coupled
 
    !> Whether contact begins, or has begun in the segment, on so few nodes that large increments with coupling would not be
-   !> accurate.
+   !> accurate; or begins on layers, so that it does not grow in proportion to its shape.
    logical function begins_on_few_nodes(path, interval, progress) result(few)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: interval
@@ -226,7 +226,8 @@ contains
          few = has_begun(progress) .and. path%state%contact_nodes() < nodes_to_begin
       else
          call first_guess(path, interval, 1.0_wp, contact)
-         few = count(contact) < error_at_start/path%model%scene%method%accuracy
+         few = count(contact) < error_at_start/path%model%scene%method%accuracy .or. &
+               (path%model%compliance%by_distance .and. .not. path%model%compliance%is_homogeneous)
       end if
    end function begins_on_few_nodes
 
@@ -555,7 +556,7 @@ contains
       class(contact_path_type), intent(in) :: path
       type(leap_progress_type), intent(in) :: progress
       type(chain_type), intent(in) :: chain
-      real(wp), parameter :: fraction = 0.06_wp, part = 0.25_wp
+      real(wp), parameter :: fraction = 0.06_wp, part = 0.25_wp, least = 0.01_wp
       real(wp) :: cycle_work, share
 
       work = chain%work
@@ -564,8 +565,9 @@ contains
          work = max(work, cycle_work*path%model%force(path%model%static_friction*chain%after(chain%increments)%pressure)**2)
       else if (has_begun(progress)) then
          share = (progress%done + progress%length)/progress%goal
-         work = max(work, part*min(cycle_work*progress%sliding_limit**2, &
-                                   (path%state%dissipation - progress%dissipation + chain%work)/share**2))
+         work = max(work, least*cycle_work*progress%sliding_limit**2, &
+                    part*min(cycle_work*progress%sliding_limit**2, &
+                             (path%state%dissipation - progress%dissipation + chain%work)/share**2))
          if (chain%rough) work = max(work, part*cycle_work*sum_of_squares(path, chain%after(chain%increments)%pressure))
       end if
    end function reference_work
@@ -699,7 +701,7 @@ contains
       type(chain_type), intent(in) :: coarser
       type(chain_type), intent(inout) :: finer
       !> Orders of convergence that are taken as such.
-      real(wp), parameter :: least_order = 0.5_wp, most_order = 1.0_wp
+      real(wp), parameter :: least_order = 0.5_wp, most_order = 2.0_wp
       real(wp) :: order, ratio
 
       ratio = real(finer%increments, wp)/real(coarser%increments, wp)
@@ -729,7 +731,7 @@ contains
       integer, parameter :: smooth_from = 8
       real(wp) :: smooth, corners, difference, change, by_rates, error
 
-      call chain_dissipation(path%model, finer%before(1)%fields, finer%after, finer%begins, finer%changes, smooth, corners)
+      call chain_dissipation(path%model, finer%before(1)%fields, finer%after, finer%changes, smooth, corners)
       finer%by_slopes = smooth
       difference = abs(smooth - finer%node_wise)
       finer%work = 0.5_wp*(max(smooth, 0.0_wp) + finer%node_wise)

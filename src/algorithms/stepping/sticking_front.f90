@@ -15,6 +15,7 @@
 !> effects of other zones are iterated.
 module mfv_sticking_front
    use mfv_contact_fields, only: contact_fields_type
+   use mfv_contact_system, only: front_type
    use mfv_kinds, only: wp
    use mfv_node_status
    use mfv_zone_edges, only: zone_type, zones_of
@@ -37,6 +38,7 @@ module mfv_sticking_front
    contains
       procedure :: number
       procedure :: set_hold
+      procedure :: of_nodes
       procedure :: group_weight
       procedure :: assume
       procedure :: correct
@@ -45,9 +47,9 @@ module mfv_sticking_front
 contains
 
    !> The fronts for statuses at the end of an increment, shape (nodes). `held`: nodes that hold from its start, at the slip `hold`
-   !> (length); `start`: the fields there; `open`: nodes that were open there; `gap`: the gaps there, length; `ahead`: how far nodes
-   !> slip after the end of the increment until they stick, length; all shape (nodes). `in_proportion`: whether zones have grown in
-   !> proportion to their size, since the contact began.
+   !> (length); `start`: the fields there; `open`: nodes that were open there; `gap`: the gaps there or, if
+   !> `in_proportion`, before deformation, length; `ahead`: how far nodes slip after the end of the increment until they stick,
+   !> length; all shape (nodes). `in_proportion`: whether zones have grown in proportion to their size, since the contact began.
    subroutine find_fronts(status, held, open, hold, start, gap, ahead, in_proportion, fronts)
       integer, intent(in) :: status(:)
       logical, intent(in) :: held(:), open (:)
@@ -100,7 +102,7 @@ contains
          real(wp), parameter :: near_edge = 0.25_wp, far = 0.75_wp
          real(wp), dimension(from:to) :: base, weight, by_power
          real(wp) :: power, slip(size(gap))
-         integer :: outwards, width, step, i
+         integer :: outwards, width, step, inner, i
 
          outwards = sign(1, outer - near)
          width = 0
@@ -111,7 +113,10 @@ contains
          power = min(max((far*width - abs(outer - near))/((far - near_edge)*max(width, 1)), 0.0_wp), 1.0_wp)
          if (in_proportion) power = 0.0_wp
          slip = start%slip()
-         step = min(abs(outer - near), max((reach - reach/2)/2, 1))
+         inner = reach
+         ! On one side of where contact began.
+         if (in_proportion) inner = min(reach, 2*abs(near - minloc(gap, dim=1)))
+         step = min(abs(outer - near), max((inner - inner/2)/2, 1))
          call interpolate(from, to, outer, near - outwards*step*[(i, i=0, min(2, reach/step))], base, weight)
          by_power = powers(from, to, near + 0.5_wp*outwards, outer)
          call add_nodes(group, from, to, outer)
@@ -199,6 +204,18 @@ contains
          if (self%zone(i) > 0) hold(i) = self%base(i) + self%weight(i)*self%slip(self%group(i), self%zone(i))
       end do
    end subroutine set_hold
+
+   !> What the slip of all nodes depends on, shape (nodes).
+   pure function of_nodes(self) result(front)
+      class(fronts_type), intent(in) :: self
+      type(front_type) :: front(size(self%zone))
+      integer :: i
+
+      do i = 1, size(front)
+         if (self%zone(i) > 0) front(i) = front_type(self%outer(self%group(i), self%zone(i)), self%weight(i), &
+                                                     self%slip(self%group(i), self%zone(i)))
+      end do
+   end function of_nodes
 
    !> The change of the slip of all nodes with that of the outer nodes of a group, shape (nodes).
    pure function group_weight(self, group) result(weight)
