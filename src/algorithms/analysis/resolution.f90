@@ -56,6 +56,7 @@ contains
       call check_largest_shear(simulation, unresolved)
       call check_stick_zones(simulation, unresolved)
       call check_shakedown(simulation, unresolved)
+      call check_increments(simulation, unresolved)
       call check_rolling(simulation, unresolved)
       call check_worn_shape(simulation, unresolved)
    end subroutine find_unresolved
@@ -716,6 +717,21 @@ contains
          end associate
       end function size_of_works
    end subroutine check_shakedown
+
+   !> A dissipation that large increments do not know to the accuracy asked for, since their errors are compared with what a cycle
+   !> dissipates: that of a press during which nearly all nodes stick.
+   subroutine check_increments(simulation, unresolved)
+      type(simulation_type), intent(in) :: simulation
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
+      real(wp), parameter :: most = 3.0_wp
+
+      associate (contact => simulation%contact)
+         if (.not. contact%certificate%work_error > most*contact%model%scene%method%accuracy*contact%state%dissipation) return
+         call add_unresolved(unresolved, 'dissipation', 'next to nothing is dissipated: large increments know it to '// &
+                             to_text(contact%certificate%work_error/contact%state%dissipation, 2)//' of itself', &
+                             "use a smaller accuracy, or stepping='event'")
+      end associate
+   end subroutine check_increments
 
    !> Creepage, a mean over some intervals, while it changes.
    subroutine check_rolling(simulation, unresolved)
