@@ -782,6 +782,7 @@ contains
       if (allocated(self%warnings)) return
       call find_observables(self)
       call validity_warnings(self%simulation, self%observed, self%warnings)
+      call self%case%check_moduli(self%warnings)
    end subroutine find_warnings
 
    !> Find the observables, if they are not cached.

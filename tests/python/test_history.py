@@ -132,6 +132,7 @@ def test_invalid_histories(tmp_path: Path) -> None:
     file = tmp_path / "loads.csv"
     for text, message in (
         ("1,2\n3,4\n", "loads.csv:1: must have the names of the columns"),
+        ("P,Q\n1e-3,0\n", "unknown column 'P'; P, Q and M are normal_force, tangential_force and moment"),
         ("tangetial_force\n1e-4\n", "unknown column 'tangetial_force'; did you mean tangential_force?"),
         (",shift\n1,2\n", "column 1 has no name"),
         ("# loads\ntangential_force;time\n1e-4;0\n2e-4\n", "loads.csv:4: must be two numbers"),

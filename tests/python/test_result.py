@@ -48,6 +48,23 @@ def watched() -> mfv.Result:
     return cylinder(*TO_AND_FRO, coupling="full", output=mfv.Output(stress_at=0.02), **units).run(check=True)
 
 
+def test_moduli_in_another_unit_are_warned_of() -> None:
+    """Pa beside mm and N; not without names of units, and not for real materials."""
+    steel = {"youngs_modulus": 210e3, "poisson_ratio": 0.3}
+    pascals = steel | {"youngs_modulus": 210e9}
+    units = {"length_unit": "mm", "force_unit": "N"}
+
+    def warnings(lower: mfv.Body, **units: str) -> list[str]:
+        result = mfv.Scene(lower, mfv.Body.disk(10.0, **steel), steps=[mfv.Step(normal_force=100.0)], **units).run()
+        return [warning for warning in result.warnings if "diamond" in warning]
+
+    coated = mfv.Body.half_plane(**steel, layers=[mfv.Layer(thickness=1.0, **pascals)])
+    assert "the lower body has a contact modulus E* of 2.3e11 N/mm^2" in warnings(mfv.Body.half_plane(**pascals), **units)[0]
+    assert len(warnings(coated, **units)) == 1
+    assert not warnings(mfv.Body.half_plane(**pascals)) and not warnings(mfv.Body.half_plane(**steel), **units)
+    assert not warnings(mfv.Body.half_plane(**pascals), length_unit="m", force_unit="N")
+
+
 def test_panels_of_cycles_need_cycles(pressed: mfv.Result) -> None:
     for panel in (mfv.plot.nonlinear_loop, mfv.plot.friction_work, mfv.plot.cycles_figure):
         with pytest.raises(ValueError, match="this result has no cycles; give a step cycles="):

@@ -1,11 +1,14 @@
 !> A case: a scene with the requested output, and its text.
 module mfv_case
+   use mfv_body, only: body_type
    use mfv_case_data, only: case_data_type
    use mfv_kinds, only: wp
+   use mfv_material, only: material_type
    use mfv_motions, only: motion_count, control_keep, controlled_key
+   use mfv_near_field, only: near_field_of, near_field_type
    use mfv_scene, only: scene_type
    use mfv_simulation, only: history_events, simulation_type, states_auto
-   use mfv_strings, only: to_text
+   use mfv_strings, only: add_text, string_type, to_text
    implicit none
    private
    public :: case_type
@@ -35,6 +38,7 @@ module mfv_case
       character(:), allocatable :: length_unit, force_unit
    contains
       procedure :: explain
+      procedure :: check_moduli
    end type case_type
 
 contains
@@ -61,5 +65,50 @@ contains
       end if
       simulation%message = text//simulation%message
    end subroutine explain
+
+   !> Warn of bodies that are stiffer than any material by the names of the units, such as moduli in Pa beside mm and N.
+   subroutine check_moduli(self, warnings)
+      class(case_type), intent(in) :: self
+      type(string_type), allocatable, intent(inout) :: warnings(:)
+      character(len=2), parameter :: lengths(6) = [character(len=2) :: 'm', 'cm', 'mm', 'um', 'nm', 'in'], &
+                                                   forces(5) = [character(len=2) :: 'N', 'kN', 'MN', 'mN', 'uN']
+      real(wp), parameter :: metres(6) = [1.0_wp, 1.0e-2_wp, 1.0e-3_wp, 1.0e-6_wp, 1.0e-9_wp, 2.54e-2_wp], &
+                             newtons(5) = [1.0_wp, 1.0e3_wp, 1.0e6_wp, 1.0e-3_wp, 1.0e-6_wp]
+      integer :: length, force
+
+      length = findloc(lengths == self%length_unit, .true., dim=1)
+      force = findloc(forces == self%force_unit, .true., dim=1)
+      if (length == 0 .or. force == 0) return
+      call check_body('lower', self%scene%lower)
+      call check_body('upper', self%scene%upper)
+
+   contains
+
+      subroutine check_body(name, body)
+         character(*), intent(in) :: name
+         type(body_type), intent(in) :: body
+         !> E* of diamond is 1.1e12 Pa.
+         real(wp), parameter :: stiffest = 2.0e12_wp
+         real(wp) :: modulus, pascals
+
+         modulus = modulus_of(body%elasticity%material)
+         if (body%elasticity%is_layered()) &
+            modulus = max(modulus, modulus_of(body%elasticity%base), maxval(modulus_of(body%elasticity%layer%material)))
+         pascals = modulus*newtons(force)/metres(length)**2
+         if (.not. pascals > stiffest) return
+         call add_text(warnings, 'the '//name//' body has a contact modulus E* of '//to_text(modulus, 2)//' '//self%force_unit// &
+                       '/'//self%length_unit//'^2, which are '//to_text(pascals, 2)//' Pa, more than that of diamond: '// &
+                       'check the units of its moduli; a rigid body has rigid=.true.')
+      end subroutine check_body
+   end subroutine check_moduli
+
+   !> The contact modulus E* of a material, force/length^2; 0 without one.
+   elemental real(wp) function modulus_of(material)
+      type(material_type), intent(in) :: material
+      type(near_field_type) :: constants
+
+      constants = near_field_of(material)
+      modulus_of = 2.0_wp*constants%modulus()
+   end function modulus_of
 
 end module mfv_case

@@ -53,8 +53,9 @@ contains
       call keys%add('scene', 'plane', kind_choice, 'plane strain or plane stress', default='strain', choices=plane_names)
       call keys%add('scene', 'coupling', kind_choice, 'elastic coupling: full, without the effect of shear on the normal '// &
                     'problem (Goodman), or none', default='full', choices=coupling_names)
-      call keys%add('scene', 'length_unit', kind_text, 'name of the unit of length, for labels only', default='length')
-      call keys%add('scene', 'force_unit', kind_text, 'name of the unit of force, for labels only', default='force')
+      call keys%add('scene', 'length_unit', kind_text, &
+                    'name of the unit of length, for labels and a check of moduli', default='length')
+      call keys%add('scene', 'force_unit', kind_text, 'name of the unit of force, likewise', default='force')
    end subroutine add_scene_keys
 
    subroutine add_body_keys(keys)

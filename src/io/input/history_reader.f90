@@ -132,6 +132,7 @@ contains
                return
             end if
             call suggest(name, known, '', advice)
+            if (any(name == ['p', 'q', 'm'])) advice = '; P, Q and M are normal_force, tangential_force and moment'
             if (advice == '') advice = '; columns are'//list//', and '//ignored//', which is ignored'
             call reader%complain(group, 1, 'file', path//': unknown column '''//written(i)%text//''''//advice, error)
             return
