@@ -724,12 +724,14 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
       real(wp), parameter :: most = 3.0_wp
+      real(wp) :: work
 
       associate (contact => simulation%contact)
-         if (.not. contact%certificate%work_error > most*contact%model%scene%method%accuracy*contact%state%dissipation) return
-         call add_unresolved(unresolved, 'dissipation', 'next to nothing is dissipated: large increments know it to '// &
-                             to_text(contact%certificate%work_error/contact%state%dissipation, 2)//' of itself', &
-                             "use a smaller accuracy, or stepping='event'")
+         work = max(contact%state%dissipation - contact%state%skipped_dissipation, tiny(work))
+         if (.not. contact%certificate%dissipation_error > most*contact%model%scene%method%accuracy*work) return
+         call add_unresolved(unresolved, 'dissipation', 'the dissipation is next to nothing: large increments find it with an '// &
+                             'estimated error of '//to_text(100.0_wp*min(contact%certificate%dissipation_error/work, 1.0_wp), 2)// &
+                             ' %', "use a smaller accuracy, or stepping='event'")
       end associate
    end subroutine check_increments
 

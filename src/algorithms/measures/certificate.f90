@@ -61,10 +61,10 @@ module mfv_certificate
       !> Largest estimated errors of large increments: of the tractions relative to the largest traction so far, and of the
       !> dissipated energy relative to the dissipation of the interval.
       real(wp) :: increment_traction_error = 0.0_wp, increment_dissipation_error = 0.0_wp
-      !> Sum of the estimated errors of the dissipated energy, force.
-      real(wp) :: work_error = 0.0_wp
       !> Whether the former is a root mean square, that of a rough contact.
       logical :: by_mean_square = .false.
+      !> Sum of the estimated errors of the dissipated energy by large increments, force.
+      real(wp) :: dissipation_error = 0.0_wp
       !> Largest traction so far, force/length^2; largest force of every motion so far.
       real(wp) :: traction_scale = 0.0_wp, force_scale(motion_count) = 0.0_wp
       !> Largest displacements and energy so far.
@@ -151,7 +151,7 @@ contains
 
       self%by_mean_square = self%by_mean_square .or. by_mean_square
       if (traction > 0.0_wp) self%increment_traction_error = max(self%increment_traction_error, traction_error/traction)
-      self%work_error = self%work_error + work_error
+      self%dissipation_error = self%dissipation_error + work_error
       if (work > 0.0_wp) self%increment_dissipation_error = max(self%increment_dissipation_error, work_error/work)
    end subroutine note_large_increment
 

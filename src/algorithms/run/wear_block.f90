@@ -10,12 +10,15 @@
 !>
 !> C is the compliance and d the change of the approach. Nodes that do not slip have their present pressure p. The gap is zero at
 !> nodes that slip in the cycle or are in contact, else the present one. All nodes that slip in the cycle are thus loaded at once,
-!> and coupling is neglected. Other nodes have the r/p of the nearest ones.
+!> and coupling is neglected. Other nodes have the r/p of the nearest ones, beyond the contact the larger one of its two outermost
+!> nodes. The gap has the correction of the block before, which is worn off with this one. Since what is touched within a step of
+!> the implicit rule wears as from its start, N cycles are divided into m equal steps in each of which the edges of the contact
+!> move outwards by about an interval.
 !>
 !> The two cycles after the block, each alone, tell its error. The first of them wears by f1, with slip that the wear of the block
 !> causes; the next one, f2, with f of one cycle (N = 1) before the block, tells what the N + 1 cycles wear: by t = (N + 1) f +
-!> N (f2 - f)/2, the trapezoidal rule. The correction of the depth is e = t - h - f1, damped as the block is by the pressures q that
-!> it causes:
+!> N (f2 - f)/2, the trapezoidal rule, and `bend` for m > 1. The correction of the depth is e = t - h - f1, damped as the block is
+!> by the pressures q that it causes:
 !>
 !>     C q - d + N (r/p) q = -e in contact after the block, q = 0 elsewhere;   force of q = 0, or d = 0;   c = e + N (r/p) q,
 !>
@@ -52,8 +55,8 @@ module mfv_wear_block
       integer :: cycles = 1
       !> Depth of the wear of the block, and of its first cycle: length, shape (nodes).
       real(wp), allocatable :: depth(:), first(:)
-      !> What the depth has more than half of the wear per cycle at the start and at the end of the block, times its cycles: length,
-      !> shape (nodes); 0 if it is found in one step.
+      !> The trapezoidal rule over the steps of the block less that over the whole of it: depth, length, shape (nodes); 0 if there
+      !> is one step.
       real(wp), allocatable :: bend(:)
       !> Predicted change of the pressures or of the wear over the block, see change_of.
       real(wp) :: change = 0.0_wp

@@ -364,7 +364,7 @@ contains
       error = 0.0_wp
       done = .false.
       ! If GMRES takes the inverses as exact, the round-off that their updates accumulate does not appear in its residual.
-      checked = tolerance <= drift .and. self%preconditioner%is_exact()
+      checked = tolerance <= drift .and. inverts(self)
       before = huge(1.0_wp)
       target = 0.0_wp
       do pass = 1, most_passes
@@ -393,6 +393,13 @@ contains
       fails = reached > max(significant*scale, 1.0e2_wp*target)
    end subroutine iterate
 
+   !> Whether the preconditioner inverts the rows but for the coupling.
+   pure logical function inverts(self)
+      class(krylov_system_type), intent(in) :: self
+
+      inverts = self%preconditioner%is_exact() .and. .not. allocated(self%front)
+   end function inverts
+
    !> The residual at which the error of the unknowns is about `error`, or their round-off. Where the inverses are not exact, the
    !> residual is not the error; where friction decreases with slip, the rows can be nearly singular, and the error is larger.
    real(wp) function target_of(self, right, error) result(target)
@@ -402,7 +409,7 @@ contains
       real(wp), parameter :: of_approximation = 0.1_wp, of_weakening = 0.01_wp
       real(wp) :: part
 
-      part = merge(1.0_wp, of_approximation, self%preconditioner%is_exact())
+      part = merge(1.0_wp, of_approximation, inverts(self))
       if (any(self%softness < 0.0_wp)) part = of_weakening
       target = max(part*error, round_off(self, right))
    end function target_of
@@ -479,8 +486,9 @@ contains
       rows = right%rows - rows
    end subroutine find_residual
 
-   !> Product of the preconditioned matrix with a change of the unknowns. If the inverses are exact, it is the change itself plus
-   !> what the preconditioner leaves out: normal displacements by the shear, and those by resultants that depend on the datum.
+   !> Product of the preconditioned matrix with a change of the unknowns. If the inverses are exact and there are no fronts, it is
+   !> the change itself plus what the preconditioner leaves out: normal displacements by the shear, and those by resultants that
+   !> depend on the datum.
    subroutine multiply_preconditioned(self, model, unknowns, rows)
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -491,7 +499,7 @@ contains
       integer :: m, s
 
       call spread_tractions(self, unknowns)
-      exact = self%preconditioner%is_exact() .and. .not. allocated(self%front)
+      exact = inverts(self)
       if (exact) then
          m = size(self%contact)
          s = size(self%held)

@@ -181,7 +181,7 @@ contains
       if (present(held)) then
          associate (start => path%state%fields)
             call find_fronts(path%state%status, held,.not. start%pressure > 0.0_wp, hold, start, &
-                             merge(path%model%initial_gap, path%model%gap(start), in_proportion), &
+                             merge(path%model%initial_gap - path%model%rigid_normal(start), path%model%gap(start), in_proportion), &
                              ahead, in_proportion, fronts)
          end associate
          zones = count(any(fronts%outer > 0, dim=1))

@@ -98,7 +98,7 @@ contains
          status = path%state%status
          if (chain%fronts) held = holding_before(chain, start, i)
          by_pressure = .false.
-         if (chain%fronts .and. .not. (chain%begins .or. present(coarser))) call guess_growth(path, interval)
+         if (i == 1 .and. chain%fronts .and. .not. (chain%begins .or. present(coarser))) call guess_growth(path, interval)
          chain%after(i) = path%state%fields
          if (i == 1) call guess_slip(path, interval, reached(chain, i), chain%after(i), by_pressure, held)
          known = .false.
@@ -463,8 +463,9 @@ contains
    !> A first guess of the slipping nodes at a fraction of the interval: they slip in the direction of the tangential load. Under
    !> constant pressures and tangential force control their number is that of Mindlin's contact of cylinders: the edge of the stick
    !> zone is where the pressure is sqrt(Q/(mu P)) of the largest in its patch; after a reversal, with half the change in place of
-   !> Q. The opposite force usually has the opposite of all shear, `fields`, and the same stick zones (Masing). Only nodes
-   !> stick that hold from the start (`held`), if these are known. `by_pressure`: whether their number follows from the pressures.
+   !> Q. The opposite force usually reverses all shear, which `fields` then have as a first guess, and has the same stick zones
+   !> (Masing). Only nodes stick that hold from the start (`held`), if these are known. `by_pressure`: whether their number follows
+   !> from the pressures.
    subroutine guess_slip(path, interval, fraction, fields, by_pressure, held)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
@@ -517,6 +518,7 @@ contains
       n = size(status)
       associate (load => interval%load(motion_approach), contact => in_contact(path%state%status))
          if (load%control /= control_force .or. .not. (load%value > 0.0_wp .and. load%rate > 0.0_wp)) return
+         if (contact(1) .or. contact(n) .or. count(contact .and. .not. eoshift(contact, -1, .false.)) /= 1) return
          growth = sqrt(1.0_wp + load%rate/load%value)
          middle = 0.5_wp*(findloc(contact, .true., dim=1) + findloc(contact, .true., dim=1, back=.true.))
       end associate

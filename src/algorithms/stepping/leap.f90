@@ -10,9 +10,9 @@
 !> that touches during an increment holds at an estimate of its slip at first contact, and a node that slips and sticks again within
 !> an increment is treated as stuck. Dissipation: see mfv_chain_dissipation.
 !>
-!> With full coupling the shear tractions depend on how the contact has grown. If it begins and one chain is not accurate (it is, if
-!> the contact grows in proportion to its shape), it begins by events, on few nodes; then intervals double the load or, where that
-!> is not accurate, less. Their errors are compared with tractions and dissipation at the end of the segment.
+!> With full coupling the shear tractions depend on how the contact has grown. If it begins on layers, or one chain is not accurate
+!> (it is, if the contact grows in proportion to its shape), it begins by events, on few nodes; then intervals double the load or,
+!> where that is not accurate, less. Their errors are compared with tractions and dissipation at the end of the segment.
 !>
 !> An interval that would take more solves than it has events is applied by events (mfv_first_violation), which are exact; gross
 !> sliding and separation are therefore found there. The certificate checks large increments at their ends only.
@@ -227,7 +227,7 @@ contains
       else
          call first_guess(path, interval, 1.0_wp, contact)
          few = count(contact) < error_at_start/path%model%scene%method%accuracy .or. &
-               (path%model%compliance%by_distance .and. .not. path%model%compliance%is_homogeneous)
+               path%model%scene%lower%elasticity%is_layered() .or. path%model%scene%upper%elasticity%is_layered()
       end if
    end function begins_on_few_nodes
 
@@ -550,8 +550,9 @@ contains
    !> The work that the error of the dissipation of a chain is compared with, force: the dissipation. If contact begins, that is
    !> often next to nothing: then at least that of a cycle of shear to about 0.8 mu P, as a fraction of (mu P)^2/m, m the contact
    !> modulus. In later parts of a segment in which it has begun, at least a `part` of the dissipation at the goal, if it grows with
-   !> the square of the load as that of a parabola, but no more than that of such a cycle; in rough contacts at least a `part` of
-   !> that of such cycles of all patches, as if each was alone.
+   !> the square of the load as that of a parabola, but no more than that of such a cycle; at least the fraction `least` of that
+   !> of such a cycle at the goal; in rough contacts at least a `part` of that of such cycles of all patches, as if each was
+   !> alone.
    pure real(wp) function reference_work(path, progress, chain) result(work)
       class(contact_path_type), intent(in) :: path
       type(leap_progress_type), intent(in) :: progress
@@ -692,18 +693,20 @@ contains
       end associate
    end subroutine find_moving
 
-   !> Errors of the finer of two chains of an interval: tractions at the order at which they converge, at most the first, and the
-   !> square root if that is not known; dissipation by mfv_chain_dissipation. In rough contacts, where single nodes of small patches
-   !> may close in another order, that of tractions is a root mean square, times the ratio of the largest traction to theirs.
+   !> Errors of the finer of two chains of an interval: tractions at the order at which they converge, at most the first, with
+   !> fronts after the contact has begun (these double) the second, and the square root if that is not known; dissipation by
+   !> mfv_chain_dissipation. In rough contacts, where single nodes of small patches may close in another order, that of tractions
+   !> is a root mean square, times the ratio of the largest traction to theirs.
    subroutine compare(path, interval, coarser, finer)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
       type(chain_type), intent(in) :: coarser
       type(chain_type), intent(inout) :: finer
       !> Orders of convergence that are taken as such.
-      real(wp), parameter :: least_order = 0.5_wp, most_order = 2.0_wp
-      real(wp) :: order, ratio
+      real(wp), parameter :: least_order = 0.5_wp
+      real(wp) :: order, ratio, most_order
 
+      most_order = merge(2.0_wp, 1.0_wp, finer%fronts .and. .not. finer%begins)
       ratio = real(finer%increments, wp)/real(coarser%increments, wp)
       associate (a => coarser%after(coarser%increments), b => finer%after(finer%increments))
          finer%difference = max(maxval(abs(a%pressure - b%pressure)), maxval(abs(a%shear - b%shear)))

@@ -7,7 +7,8 @@
 !> So it is taken where the zone grows within the nearer part of what slipped at the start. Beyond that S is the cubic through E and
 !> three nodes that have held: the outermost one, and two at equal distances further in, as far as E is further out. A contact that
 !> begins within the increment grows in proportion to its shape (exactly so for a power of x, under loads that grow in proportion):
-!> there S follows the gap before the increment. If it has begun in an increment before and still does, S is that cubic everywhere.
+!> there S follows the undeformed gap. If it has begun in an increment before and still does, S is that cubic everywhere, with held
+!> nodes on one side of where contact began.
 !>
 !> S depends on the slip of E, an unknown of the same increment: slip(E) = s + sum of r theta over the slips theta that are assumed
 !> for the outer nodes, r the responses to unit slips. The fronts to the left and to the right of all stick zones are two groups,
@@ -102,7 +103,7 @@ contains
          real(wp), parameter :: near_edge = 0.25_wp, far = 0.75_wp
          real(wp), dimension(from:to) :: base, weight, by_power
          real(wp) :: power, slip(size(gap))
-         integer :: outwards, width, step, inner, i
+         integer :: outwards, width, step, inner, first, last, i
 
          outwards = sign(1, outer - near)
          width = 0
@@ -114,8 +115,13 @@ contains
          if (in_proportion) power = 0.0_wp
          slip = start%slip()
          inner = reach
-         ! On one side of where contact began.
-         if (in_proportion) inner = min(reach, 2*abs(near - minloc(gap, dim=1)))
+         if (in_proportion) then
+            ! On one side of where contact began.
+            first = min(near, near - outwards*reach)
+            last = first - 1 + minloc(gap(first:first + reach), dim=1, back=.true.)
+            first = first - 1 + minloc(gap(first:first + reach), dim=1)
+            inner = min(reach, abs(2*near - first - last))
+         end if
          step = min(abs(outer - near), max((inner - inner/2)/2, 1))
          call interpolate(from, to, outer, near - outwards*step*[(i, i=0, min(2, reach/step))], base, weight)
          by_power = powers(from, to, near + 0.5_wp*outwards, outer)

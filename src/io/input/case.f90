@@ -34,7 +34,7 @@ module mfv_case
       logical :: sensitivity = .false.
       !> Minutes of wall clock between checkpoints; 0: only when the run is interrupted.
       real(wp) :: checkpoint_minutes = 0.0_wp
-      !> Names of the user's units, for labels.
+      !> Names of the user's units, for labels and check_moduli.
       character(:), allocatable :: length_unit, force_unit
    contains
       procedure :: explain
@@ -70,9 +70,9 @@ contains
    subroutine check_moduli(self, warnings)
       class(case_type), intent(in) :: self
       type(string_type), allocatable, intent(inout) :: warnings(:)
-      character(len=2), parameter :: lengths(6) = [character(len=2) :: 'm', 'cm', 'mm', 'um', 'nm', 'in'], &
+      character(len=2), parameter :: lengths(5) = [character(len=2) :: 'm', 'cm', 'mm', 'um', 'nm'], &
                                                    forces(5) = [character(len=2) :: 'N', 'kN', 'MN', 'mN', 'uN']
-      real(wp), parameter :: metres(6) = [1.0_wp, 1.0e-2_wp, 1.0e-3_wp, 1.0e-6_wp, 1.0e-9_wp, 2.54e-2_wp], &
+      real(wp), parameter :: metres(5) = [1.0_wp, 1.0e-2_wp, 1.0e-3_wp, 1.0e-6_wp, 1.0e-9_wp], &
                              newtons(5) = [1.0_wp, 1.0e3_wp, 1.0e6_wp, 1.0e-3_wp, 1.0e-6_wp]
       integer :: length, force
 
@@ -96,9 +96,9 @@ contains
             modulus = max(modulus, modulus_of(body%elasticity%base), maxval(modulus_of(body%elasticity%layer%material)))
          pascals = modulus*newtons(force)/metres(length)**2
          if (.not. pascals > stiffest) return
-         call add_text(warnings, 'the '//name//' body has a contact modulus E* of '//to_text(modulus, 2)//' '//self%force_unit// &
-                       '/'//self%length_unit//'^2, which are '//to_text(pascals, 2)//' Pa, more than that of diamond: '// &
-                       'check the units of its moduli; a rigid body has rigid=.true.')
+         call add_text(warnings, 'the '//name//' body, or a layer of it, has a contact modulus E* of '//to_text(modulus, 2)// &
+                       ' '//self%force_unit//'/'//self%length_unit//'^2, which is '//to_text(pascals, 2)//' Pa, '// &
+                       'more than that of diamond: check the units of its moduli; a rigid body has rigid=.true.')
       end subroutine check_body
    end subroutine check_moduli
 
