@@ -230,6 +230,33 @@ LAWS = {
 }
 
 
+@pytest.mark.parametrize("nodes", [600, 601])
+@pytest.mark.parametrize("waves", [False, True])
+def test_growing_stick_zones_by_iteration(waves: bool, nodes: int) -> None:
+    """Slip at fronts in the rows of the iteration, by responses in the direct solver; even and odd numbers of nodes; mirror images."""
+
+    def steps(sign: float, solver: str) -> list[Any]:
+        mesh = mfv.Mesh(nodes=nodes, period=2.6) if waves else mfv.Mesh(nodes=nodes, half_width=1.3)
+        upper = mfv.Body.wave(0.004, 2.6, rigid=True) if waves else mfv.Body.disk(50.0, rigid=True)
+        loads = [
+            mfv.Step(normal_force=0.006),
+            mfv.Step(normal_force=0.009, tangential_force=sign * 1.2e-3),
+            mfv.Step(tangential_force=-sign * 1.2e-3, cycles=1),
+        ]
+        lower = mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.2)
+        scene = mfv.Scene(lower, upper, mesh=mesh, friction=mfv.Friction.coulomb(0.4), steps=loads, coupling="full")
+        scene.solver = mfv.Solver(accuracy=1e-2, stepping="leap", linear_solver=solver)
+        result = scene.run()
+        assert result.summary.leaps > 0
+        return list(result.steps)
+
+    iterated = steps(1.0, "fft")
+    for one, direct, mirrored_one in zip(iterated, steps(1.0, "reduced"), steps(-1.0, "fft"), strict=True):
+        allowed = 1e-8 * one.pressure.max()
+        assert one.shear == pytest.approx(direct.shear, rel=0, abs=allowed)
+        assert one.shear == pytest.approx(-mirrored_one.shear[::-1], rel=0, abs=allowed)
+
+
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("seed", (0, 1))
 def test_mirror_image_bodies_exchanged_and_units_under_other_laws(law: str, seed: int) -> None:
