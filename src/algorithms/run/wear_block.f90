@@ -108,7 +108,7 @@ contains
             block%depth(problem%node) = problem%softness*pressure*problem%length
             block%first = block%depth
          else
-            call wear_off(block, steps_for(problem, pressure))
+            call wear_off(block, steps_for(problem, pressure), pressure)
          end if
       end associate
    end subroutine find_wear_block
@@ -124,31 +124,35 @@ contains
       steps = min(max(1, count(pressure > 0.0_wp .and. .not. problem%pressure > 0.0_wp)/2), most)
    end function steps_for
 
-   !> Find the depth of a block and of its first cycle by `steps` equal steps, each under the pressures at its end.
-   subroutine wear_off(block, steps)
+   !> Find the depth of a block and of its first cycle by `steps` equal steps, each under the pressures at its end. `pressure`: at
+   !> the end of a single step, shape (nodes of the problem).
+   subroutine wear_off(block, steps, pressure)
       type(wear_block_type), intent(inout) :: block
       integer, intent(in) :: steps
-      type(problem_type) :: problem
-      real(wp), allocatable :: pressure(:), wear(:), first(:)
+      real(wp), allocatable, intent(inout) :: pressure(:)
+      real(wp), allocatable :: opening(:), before(:), wear(:), first(:)
       real(wp) :: cycles
       integer :: i
 
-      problem = block%problem
       cycles = real(block%cycles, wp)/steps
-      call solve(problem, 1.0_wp, pressure)
-      first = problem%softness*pressure
-      allocate (wear(size(first)), source=0.0_wp)
-      do i = 1, steps
-         call solve(problem, cycles, pressure)
-         wear = wear + cycles*problem%softness*pressure
-         problem%opening = problem%opening + cycles*problem%softness*pressure
-         problem%pressure = pressure
-      end do
-      associate (node => problem%node, length => problem%length)
-         block%first(node) = first*length
-         block%depth(node) = wear*length
-         if (steps > 1) block%bend(node) = (wear + 0.5_wp*cycles*(first - problem%softness*pressure) &
-                                            - 0.5_wp*block%cycles*(first + problem%softness*pressure))*length
+      associate (problem => block%problem)
+         opening = problem%opening
+         before = problem%pressure
+         call solve(problem, 1.0_wp, first)
+         first = problem%softness*first
+         allocate (wear(size(first)), source=0.0_wp)
+         do i = 1, steps
+            if (steps > 1) call solve(problem, cycles, pressure)
+            wear = wear + cycles*problem%softness*pressure
+            problem%opening = problem%opening + cycles*problem%softness*pressure
+            problem%pressure = pressure
+         end do
+         problem%opening = opening
+         problem%pressure = before
+         block%first(problem%node) = first*problem%length
+         block%depth(problem%node) = wear*problem%length
+         if (steps > 1) block%bend(problem%node) = (wear + 0.5_wp*cycles*(first - problem%softness*pressure) &
+                                                    - 0.5_wp*block%cycles*(first + problem%softness*pressure))*problem%length
       end associate
    end subroutine wear_off
 
