@@ -6,6 +6,7 @@ module mfv_case
    use mfv_material, only: material_type
    use mfv_motions, only: motion_count, control_keep, controlled_key
    use mfv_near_field, only: near_field_of, near_field_type
+   use mfv_profile_file, only: metres_in
    use mfv_scene, only: scene_type
    use mfv_simulation, only: history_events, simulation_type, states_auto
    use mfv_strings, only: add_text, string_type, to_text
@@ -70,15 +71,14 @@ contains
    subroutine check_moduli(self, warnings)
       class(case_type), intent(in) :: self
       type(string_type), allocatable, intent(inout) :: warnings(:)
-      character(len=2), parameter :: lengths(5) = [character(len=2) :: 'm', 'cm', 'mm', 'um', 'nm'], &
-                                                   forces(5) = [character(len=2) :: 'N', 'kN', 'MN', 'mN', 'uN']
-      real(wp), parameter :: metres(5) = [1.0_wp, 1.0e-2_wp, 1.0e-3_wp, 1.0e-6_wp, 1.0e-9_wp], &
-                             newtons(5) = [1.0_wp, 1.0e3_wp, 1.0e6_wp, 1.0e-3_wp, 1.0e-6_wp]
-      integer :: length, force
+      character(len=2), parameter :: forces(5) = [character(len=2) :: 'N', 'kN', 'MN', 'mN', 'uN']
+      real(wp), parameter :: newtons(5) = [1.0_wp, 1.0e3_wp, 1.0e6_wp, 1.0e-3_wp, 1.0e-6_wp]
+      real(wp) :: metres
+      integer :: force
 
-      length = findloc(lengths == self%length_unit, .true., dim=1)
+      metres = metres_in(self%length_unit)
       force = findloc(forces == self%force_unit, .true., dim=1)
-      if (length == 0 .or. force == 0) return
+      if (force == 0 .or. .not. metres > 0.0_wp) return
       call check_body('lower', self%scene%lower)
       call check_body('upper', self%scene%upper)
 
@@ -94,7 +94,7 @@ contains
          modulus = modulus_of(body%elasticity%material)
          if (body%elasticity%is_layered()) &
             modulus = max(modulus, modulus_of(body%elasticity%base), maxval(modulus_of(body%elasticity%layer%material)))
-         pascals = modulus*newtons(force)/metres(length)**2
+         pascals = modulus*newtons(force)/metres**2
          if (.not. pascals > stiffest) return
          call add_text(warnings, 'the '//name//' body, or a layer of it, has a contact modulus E* of '//to_text(modulus, 2)// &
                        ' '//self%force_unit//'/'//self%length_unit//'^2, which is '//to_text(pascals, 2)//' Pa, '// &

@@ -10,7 +10,7 @@ module mfv_profile_file
    use mfv_table_file, only: read_table
    implicit none
    private
-   public :: read_profile
+   public :: read_profile, metres_in
 
 contains
 
@@ -54,19 +54,36 @@ contains
       type(string_type), intent(in) :: heading(:)
       type(trace_type), intent(in) :: trace
       type(error_type), allocatable, intent(out) :: error
-      !> Metres per unit.
-      real(wp), parameter :: metres(5) = [1.0_wp, 1.0e-2_wp, 1.0e-3_wp, 1.0e-6_wp, 1.0e-9_wp]
-      character(len=2), parameter :: units(5) = [character(len=2) :: 'm', 'cm', 'mm', 'um', 'nm']
-      integer :: x, height
+      character(len=2) :: x, height
 
       if (size(heading) < 2 .or. trace%has_spacing .or. abs(abs(trace%height_scale) - 1.0_wp) > 0.0_wp) return
-      x = findloc(units, unit_in(heading(size(heading) - 1)%text), dim=1)
-      height = findloc(units, unit_in(heading(size(heading))%text), dim=1)
-      if (x == 0 .or. height == 0 .or. x == height) return
-      call set_error(error, MFV_INPUT_ERROR, path//': by its heading positions are in '//trim(units(x))//' and heights in '// &
-                     trim(units(height))//'; give height_scale='//to_text(metres(height)/metres(x))//' if lengths are in '// &
-                     trim(units(x))//' (negative for heights that are positive outwards), or position_scale and height_scale')
+      x = unit_in(heading(size(heading) - 1)%text)
+      height = unit_in(heading(size(heading))%text)
+      if (x == height .or. .not. (metres_in(x) > 0.0_wp .and. metres_in(height) > 0.0_wp)) return
+      call set_error(error, MFV_INPUT_ERROR, path//': by its heading positions are in '//trim(x)//' and heights in '// &
+                     trim(height)//'; give height_scale='//to_text(metres_in(height)/metres_in(x))//' if lengths are in '// &
+                     trim(x)//' (negative for heights that are positive outwards), or position_scale and height_scale')
    end subroutine check_units
+
+   !> Metres in a unit of length; 0 if it is not known.
+   pure real(wp) function metres_in(unit) result(metres)
+      character(*), intent(in) :: unit
+
+      select case (unit)
+      case ('m')
+         metres = 1.0_wp
+      case ('cm')
+         metres = 1.0e-2_wp
+      case ('mm')
+         metres = 1.0e-3_wp
+      case ('um')
+         metres = 1.0e-6_wp
+      case ('nm')
+         metres = 1.0e-9_wp
+      case default
+         metres = 0.0_wp
+      end select
+   end function metres_in
 
    !> The unit of length in brackets at the end of the name of a column, um for micrometres in any writing; blank for none.
    pure character(len=2) function unit_in(name)
