@@ -267,7 +267,7 @@ contains
          call advise_on_heights(model%scene%lower, 'lower', advice)
          call advise_on_heights(model%scene%upper, 'upper', advice)
          names = trim(all_quantities(simulation))
-         ! They depend on whether the outermost nodes slip.
+         ! With coupling the exponents depend on whether the outermost nodes slip.
          if (model%couples(block_wt)) names = names//' left_edge_exponent right_edge_exponent'
          call add_unresolved(unresolved, names, why, advice//'use '// &
                              trim(needed_mesh(model, simulation%contact%state, sum(model%width(patch%first:patch%last)), &

@@ -15,6 +15,7 @@ module mfv_chain
    use mfv_motions, only: motion_count, motion_approach, motion_shift, control_force
    use mfv_node_status
    use mfv_tolerances, only: significant
+   use mfv_zone_edges, only: zone_type, zones_of
    implicit none
    private
    public :: chain_type, make_chain, add_samples, find_rates_after, is_rough, error_at_start
@@ -512,16 +513,19 @@ contains
    subroutine guess_growth(path, interval)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
+      type(zone_type), allocatable :: patches(:)
       real(wp) :: middle, growth
       integer :: i, n, status(size(path%state%status))
 
       n = size(status)
-      associate (load => interval%load(motion_approach), contact => in_contact(path%state%status))
+      patches = zones_of(in_contact(path%state%status))
+      associate (load => interval%load(motion_approach))
          if (load%control /= control_force .or. .not. (load%value > 0.0_wp .and. load%rate > 0.0_wp)) return
-         if (contact(1) .or. contact(n) .or. count(contact .and. .not. eoshift(contact, -1, .false.)) /= 1) return
          growth = sqrt(1.0_wp + load%rate/load%value)
-         middle = 0.5_wp*(findloc(contact, .true., dim=1) + findloc(contact, .true., dim=1, back=.true.))
       end associate
+      if (size(patches) /= 1) return
+      if (patches(1)%first == 1 .or. patches(1)%last == n) return
+      middle = 0.5_wp*(patches(1)%first + patches(1)%last)
       status = path%state%status([(min(max(nint(middle + (i - middle)/growth), 1), n), i=1, n)])
       call path%set_status(path%model%can_touch .or. .not. in_contact(status), status)
    end subroutine guess_growth

@@ -226,8 +226,7 @@ contains
          few = has_begun(progress) .and. path%state%contact_nodes() < nodes_to_begin
       else
          call first_guess(path, interval, 1.0_wp, contact)
-         few = count(contact) < error_at_start/path%model%scene%method%accuracy .or. &
-               path%model%scene%lower%elasticity%is_layered() .or. path%model%scene%upper%elasticity%is_layered()
+         few = count(contact) < error_at_start/path%model%scene%method%accuracy .or. path%model%scene%is_layered()
       end if
    end function begins_on_few_nodes
 
