@@ -298,6 +298,9 @@ def bar_of(base: mfv.Result, path: str, value: float) -> float:
         return bar_of(base, f"observables/{shift}", math.nan) * 0.5 * float(base.observables.contact_length)
     if re.fullmatch(f"{_POSITION}|{_STICK_POSITION}", name):
         return _bar_of_position(base, name)
+    turning = re.fullmatch(r"(?:left|right)_slip_zone_(reversal|return)", name)
+    if turning:
+        return bar_of(base, f"observables/stick_ratio_{turning[1]}", math.nan) * float(base.observables.contact_length)
     factors = ("cycle_dissipation",) if name.endswith("_work") else FACTORS.get(name)
     if not factors:
         return _error_of(base, EQUAL.get(name, public_name(path)))
