@@ -550,7 +550,8 @@ contains
 
    !> A largest shear at the outermost node of a patch: it lies in the last interval, where the pressure vanishes and limits it. It
    !> is resolved if it hardly changes from node to node. Nor is a largest shear resolved within few nodes of an edge that sticks
-   !> now, if slip zones had too few nodes. At a corner of a flat punch it has no limit, which its error bar says.
+   !> now, if slip zones had too few nodes, nor one near a corner of a flat punch, where it has no limit; at the corner its error bar
+   !> says so.
    subroutine check_largest_shear(simulation, unresolved)
       type(simulation_type), intent(in) :: simulation
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
@@ -572,7 +573,12 @@ contains
             distance = merge(node - zones(1)%first, zones(1)%last - node, side < 0)
             if (distance >= resolved_nodes) cycle
             associate (edge => node + side*distance)
-               if (is_beyond_corner(model, model%arc(edge) + side*model%width(edge))) cycle
+               if (is_beyond_corner(model, model%arc(edge) + side*model%width(edge))) then
+                  if (distance == 0) cycle
+                  call add_unresolved(unresolved, 'peak_shear largest_shear', 'the largest shear is near a corner, x = '// &
+                                      to_text(model%x(edge) + side*0.5_wp*model%width(edge), 4)//', where it has no limit', remedy)
+                  return
+               end if
                if (simulation%slip%is_coarse() .and. holds(state%status(edge))) then
                   call add_unresolved(unresolved, trim(merge('peak_shear largest_shear', 'peak_shear              ', &
                                                              distance == 0))//tensions_at_end(simulation), 'the largest shear '// &
