@@ -181,11 +181,9 @@ int mfv_get_loads(const mfv_case *handle, mfv_loads *loads);
  * the right, of any length; with friction, if the scene has any); if `direction` is NULL, that of the last increment, with
  * unchanged node statuses, except that nodes pressed without friction stick if the scene has friction. Zero without contact and,
  * for the shift, without friction or in gross sliding, where the tangential force follows the normal one. After a step that
- * prescribed two motions at once, it differs across the direction of that step from the derivative of
- * motions at once, it differs across the direction of that step from the derivative of
- * the end of the step by the order of the step (docs/theory.md). The state does not change. MFV_BAD_ARGUMENT if the contact does
- * not determine the tangent; if loading in that direction is impossible, the status of mfv_advance, such as
- * MFV_NO_CONTINUATION. Since 0.1.0. */
+ * prescribed two motions at once, it differs across the direction of that step from the derivative of the end of the step by the
+ * order of the step (docs/theory.md). The state does not change. MFV_BAD_ARGUMENT if the contact does not determine the tangent; if
+ * loading in that direction is impossible, the status of mfv_advance, such as MFV_NO_CONTINUATION. Since 0.1.0. */
 int mfv_tangent(mfv_case *handle, int motions, const double *direction, double *tangent);
 
 /* Derive all further states with respect to parameters, by their names separated by blanks: real keys of &body and &friction, such

@@ -179,7 +179,8 @@ contains
       real(wp), intent(inout) :: memory(:)
    end subroutine pass_event
 
-   !> Update the memory for a change of status. `point`: the state at that load, with the memory before the change.
+   !> Update the memory for a change of status. `point`: the state at that load, with the memory before the change. (In the
+   !> conventional algorithm once for a load step: nodes that do not slip at its end are taken to have slipped until then.)
    pure subroutine change_status(self, from, to, point, memory)
       class(friction_law_type), intent(in) :: self
       integer, intent(in) :: from, to

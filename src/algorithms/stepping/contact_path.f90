@@ -646,8 +646,9 @@ contains
       end do
    end function can_become_unstable
 
-   !> Begin stress drops: nodes that can neither stick nor slip in equilibrium slip, and their over-stress relaxes. `dropped`:
-   !> whether there are any.
+   !> Begin stress drops, where an increment has no solution or all statuses have been tried: nodes that may have no equilibrium
+   !> nearby once they slip (can_become_unstable) slip in the direction of their shear, and their over-stress must relax before the
+   !> load continues. `dropped`: whether there are any.
    subroutine begin_stress_drop(self, iteration, dropped)
       class(contact_path_type), intent(inout) :: self
       type(iteration_type), intent(inout) :: iteration

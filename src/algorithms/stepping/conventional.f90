@@ -177,8 +177,8 @@ contains
                <= 0.1_wp*round_off*maxval(abs(fields%pressure))
    end function agrees
 
-   !> The constraints at the fraction `done` of the segment, with friction lines for the fields `expected`. (The rates of the loads
-   !> are not used.)
+   !> The constraints at the fraction `done` of the segment, with the statuses of `path` (trial ones; its fields and memory are
+   !> those of the last load step) and friction lines for the fields `expected`. (The rates of the loads are not used.)
    !> Errors MFV_GROSS_SLIDING, MFV_SEPARATED: nothing balances the tangential force.
    subroutine constrain(path, segment, done, expected, constraints, error)
       class(contact_path_type), intent(in) :: path

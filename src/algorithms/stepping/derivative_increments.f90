@@ -88,8 +88,9 @@ contains
       if (singular) call path%derivatives%fail('the linear system at the end of a step is singular')
    end subroutine differentiate_end
 
-   !> The derivative of the fields with respect to parameter `k` at a fixed fraction of the segment and fixed statuses. The counts
-   !> and tolerances of the solver are left as they were, so that the path does not depend on whether it is differentiated.
+   !> The derivative of the fields with respect to parameter `k` at a fixed fraction of the segment and fixed statuses. `path` is at
+   !> the end of the increment, its derivatives still at the start. The counts and tolerances of the solver are left as they
+   !> were, so that the path does not depend on whether it is differentiated.
    subroutine differentiate(path, segment, setting, explicit, k, change, singular)
       type(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment

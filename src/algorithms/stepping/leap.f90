@@ -799,7 +799,8 @@ contains
                   *max(path%certificate%traction_scale, maxval(abs(fields%pressure)))
    end function has_shear
 
-   !> Accept the increments of a chain. The dissipation of each node is scaled to that of the chain.
+   !> Accept the increments of a chain from the state of `path`, at the start of the interval. The dissipation of each node is
+   !> scaled to that of the chain. (Friction has no memory here: statuses are set directly.)
    subroutine accept_chain(path, interval, progress, chain)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
