@@ -207,3 +207,28 @@ def test_the_largest_tension_of_a_history_contains_that_at_its_end() -> None:
         )
         seen = mfv.run(scene).observables
         assert seen.largest_lower_tension >= seen.lower_tension * (1.0 - 1e-9)
+
+
+def test_nodes_that_come_to_rest_stick_on_any_mesh() -> None:
+    """Under a bulk stress in phase with the shear, nodes of a part of the contact reach their limit at each end of a cycle and slip by
+    ever less, if at all: they stick, on every mesh."""
+    ratios = [
+        mfv.Scene(
+            mfv.Body.half_plane(shear_modulus=0.0506, poisson_ratio=0.26),
+            mfv.Body.power(0.0532, 1.785, rigid=True),
+            coupling="goodman",
+            friction=mfv.Friction.coulomb(0.08),
+            mesh=mfv.Mesh(nodes=nodes, half_width=0.59),
+            steps=[
+                mfv.Step(normal_force=2.6e-3),
+                mfv.Step(tangential_force=3.2e-5, lower_bulk_stress=-7e-4),
+                mfv.Step(tangential_force=-3.2e-5, lower_bulk_stress=7e-4, cycles=2),
+            ],
+        )
+        .run()
+        .summary.stick_ratio
+        for nodes in (50, 100, 200, 300, 600)
+    ]
+    print(ratios)
+    assert max(ratios) - min(ratios) < 0.003
+    assert ratios[-1] == pytest.approx(0.215, abs=0.001)

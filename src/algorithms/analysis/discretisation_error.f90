@@ -12,7 +12,7 @@ module mfv_discretisation_error
    use mfv_friction, only: friction_coefficient_type
    use mfv_kinds, only: pi, wp
    use mfv_load_extremes, only: candidate_tension, extreme_type, load_extremes_type
-   use mfv_motions, only: bulk_motions, control_keep, motion_approach, motion_count, motion_shift
+   use mfv_motions, only: bulk_motions, control_keep, motion_approach, motion_shift
    use mfv_near_field, only: near_field_type
    use mfv_node_status, only: holds, in_contact
    use mfv_observables
@@ -580,8 +580,7 @@ contains
          if (simulation%marks(mark)%step == 0) return
          of_behaviour = allowances_of_behaviours(simulation, simulation%padded(simulation%marks(mark)))
          where (index(observables%name, ending) > 0 .or. mark /= mark_loading .and. &
-                (observables%name == 'smallest_stick_ratio' .or. observables%name == 'largest_stick_ratio' .or. &
-                 observables%name == 'permanent_stick_length')) &
+                (observables%name == 'smallest_stick_ratio' .or. observables%name == 'largest_stick_ratio')) &
             allowances = max(allowances, of_behaviour(observables%error))
       end subroutine take_turning_point
 
@@ -709,50 +708,25 @@ contains
       end associate
    end function allowances_of_behaviours
 
-   !> Length over which neighbouring nodes are held at or next to their friction limit: on a slightly different mesh they may slip,
-   !> if only by next to nothing. A single node may be so near to any edge. Where loads return exactly to former ones, nodes that
-   !> have just reached their limit rest there on any mesh.
+   !> Length over which neighbouring nodes are held next to their friction limit: on a slightly different mesh they may slip. A
+   !> single node may be so near to any edge; and nodes that have just reached it, as at the end of a closed cycle, rest
+   !> there on any mesh.
    real(wp) function marginal_length(model, state) result(length)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       real(wp), parameter :: least_margin = 0.002_wp
       type(zone_type), allocatable :: runs(:)
-      real(wp) :: rest
       integer :: i
 
       length = 0.0_wp
       if (.not. model%tangential .or. .not. allocated(model%scene%friction%law)) return
-      rest = merge(1.0_wp - certified, huge(rest), returns_exactly(model))
       associate (limit => model%static_friction*state%fields%pressure, shear => abs(state%fields%shear))
-         runs = zones_of(held(state) .and. shear > (1.0_wp - least_margin)*limit .and. shear < rest*limit)
+         runs = zones_of(holds(state%status) .and. shear > (1.0_wp - least_margin)*limit .and. shear < (1.0_wp - certified)*limit)
       end associate
       do i = 1, size(runs)
          if (runs(i)%last > runs(i)%first) length = length + sum(model%width(runs(i)%first:runs(i)%last))
       end do
    end function marginal_length
-
-   !> Whether the tractions of a load history repeat exactly where its loads do: by superposition, if one motion shears a contact that
-   !> stays as it is. Otherwise nodes that come to rest at their friction limit slip on by ever less, over many cycles, and how far
-   !> depends on the mesh.
-   pure logical function returns_exactly(model)
-      type(contact_model_type), intent(in) :: model
-      logical :: shears(motion_count), moves(motion_count)
-      integer :: i
-
-      returns_exactly = .not. (model%scene%wear%acts() .or. model%couples(block_up) .or. model%couples(block_wt) .or. &
-                               model%motions_couple())
-      if (.not. returns_exactly) return
-      shears = .false.
-      do i = 1, size(model%scene%steps)
-         associate (step => model%scene%steps(i))
-            moves = step%control /= control_keep
-            if (moves(motion_approach) .and. any(shears)) returns_exactly = .false.
-            moves(motion_approach) = .false.
-            shears = shears .or. (moves .and. step%friction)
-         end associate
-      end do
-      returns_exactly = returns_exactly .and. count(shears) <= 1
-   end function returns_exactly
 
    !> Change of the largest shear, which is `largest`, if the edges of the stick zones lie elsewhere within their uncertainties,
    !> force/length^2.

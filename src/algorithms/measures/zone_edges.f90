@@ -263,22 +263,54 @@ contains
       zones = pack(zones, zones%last >= zones%first)
    end subroutine find_zones_below_limit
 
-   !> Nodes that stick, and those that may slip but have not yet: when a cycle repeats its tractions, many nodes reach their
-   !> limit together and rounding errors decide which are called slipping. If no node is called sticking, the last few at rest
-   !> before all slide do not count.
+   !> Nodes that stick, and those that are called slipping but rest at their limit (see rests): when a cycle repeats its tractions,
+   !> many nodes reach their limit together, and rounding errors or the mesh decide which of them slip, by next to nothing. If no
+   !> node is called sticking, the last few at rest before all slide do not count.
    pure function held(state)
       type(contact_state_type), intent(in) :: state
       integer, parameter :: last_before_sliding = 4
       logical :: held(size(state%status))
-      real(wp) :: scale
+      type(zone_type), allocatable :: zones(:), patches(:)
+      real(wp) :: slipped(size(state%status)), scale
+      integer :: i, patch
 
       associate (shift => state%fields%motion(motion_shift), tangential => state%fields%tangential)
          scale = max(maxval(abs(tangential)), abs(shift))
-         held = holds(state%status) .or. (slips(state%status) .and. &
-                                          abs(tangential - shift - state%stuck_slip) <= certified*scale)
+         slipped = abs(tangential - shift - state%stuck_slip)
       end associate
+      held = holds(state%status) .or. (slips(state%status) .and. slipped <= certified*scale)
+      zones = zones_of(slips(state%status))
+      patches = zones_of(in_contact(state%status))
+      do i = 1, size(zones)
+         patch = findloc(patches%last >= zones(i)%last, .true., dim=1)
+         associate (first => zones(i)%first, last => zones(i)%last, from => patches(patch)%first, to => patches(patch)%last)
+            held(first:last) = held(first:last) .or. &
+                               rests(slipped(first:last), maxval(slipped(from:to), mask=slips(state%status(from:to))))
+         end associate
+      end do
       if (.not. any(holds(state%status)) .and. count(held) <= last_before_sliding) held = .false.
    end function held
+
+   !> Whether nodes of a slip zone rest: the slip since their last stick, `slipped`, is next to nothing beside the largest in the
+   !> zone, or less beside that in the patch, `largest`, and of one size at more neighbouring nodes than where it grows with the power
+   !> 3/2 of the distance from a stick zone, or faster. All slips: lengths.
+   pure function rests(slipped, largest)
+      real(wp), intent(in) :: slipped(:), largest
+      logical :: rests(size(slipped))
+      real(wp), parameter :: nothing = 0.01_wp, nothing_in_patch = 0.001_wp, power = 1.5_wp, alike = 100.0_wp
+      integer, parameter :: fewest = 3
+      type(zone_type), allocatable :: runs(:)
+      integer :: i
+
+      rests = .false.
+      runs = zones_of(slipped <= max(nothing*maxval(slipped), nothing_in_patch*largest))
+      do i = 1, size(runs)
+         associate (run => rests(runs(i)%first:runs(i)%last), values => slipped(runs(i)%first:runs(i)%last))
+            run = values <= alike*minval(values)
+            if (count(run) < fewest + ceiling(nothing**(1.0_wp/power)*size(slipped))) run = .false.
+         end associate
+      end do
+   end function rests
 
    !> Largest size of the shear traction in a patch, force/length^2: at its nodes, and at the edges of stick zones between nodes,
    !> beyond which it is mu p. At nodes alone it would be too small by the root of the interval (Mindlin 1949: the remaining
