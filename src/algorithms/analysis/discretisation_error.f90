@@ -8,6 +8,7 @@ module mfv_discretisation_error
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_state, only: contact_state_type
    use mfv_corners, only: corner_type, corners_of, find_corner
+   use mfv_edge_fields, only: edge_quantities, is_in_cycles
    use mfv_error_bar
    use mfv_friction, only: friction_coefficient_type
    use mfv_kinds, only: pi, wp
@@ -371,6 +372,7 @@ contains
          call add_unresolved(unresolved, all_quantities(simulation), estimate%doubt, 'use more nodes')
       else
          call add_missing(values, merge('stick_zones stick_left stick_right', repeat(' ', 34), other_zones), unresolved)
+         call add_edges_of_cycles(simulation, values(:, 1), unresolved)
          if (size(unresolved) == before) return
       end if
       estimate%doubt = unresolved(size(unresolved))%text
@@ -402,6 +404,33 @@ contains
       if (names /= '') call add_unresolved(unresolved, names(2:), 'undefined on a coarser mesh, or it has another number of '// &
                                            'stick zones', 'use more nodes')
    end subroutine add_missing
+
+   !> Fields of edges at a turning point of the last cycle have the bar of the observable: none if that is undefined. `values`: of
+   !> the observables.
+   subroutine add_edges_of_cycles(simulation, values, unresolved)
+      type(simulation_type), intent(in) :: simulation
+      real(wp), intent(in) :: values(:)
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
+      character(*), parameter :: sides(2) = [character(6) :: 'left_', 'right_']
+      character(:), allocatable :: names
+      real(wp) :: known(size(edge_quantities), 4)
+      integer :: side, i
+
+      if (simulation%cycle_count == 0) return
+      associate (cycle => simulation%cycles(simulation%cycle_count))
+         known = reshape([cycle%reversal%left%values(), cycle%return%left%values(), &
+                          cycle%reversal%right%values(), cycle%return%right%values()], shape(known))
+      end associate
+      names = ''
+      do side = 1, size(sides)
+         do i = 1, size(edge_quantities)
+            if (all(ieee_is_nan(known(i, 2*side - 1:2*side))) .or. .not. is_in_cycles(i)) cycle
+            if (ieee_is_nan(values(observable_place(trim(sides(side))//trim(edge_quantities(i)))))) &
+               names = names//' '//trim(sides(side))//trim(edge_quantities(i))
+         end do
+      end do
+      if (names /= '') call add_unresolved(unresolved, names(2:), 'known at a turning point only', 'use more nodes')
+   end subroutine add_edges_of_cycles
 
    !> Why a coarser mesh says nothing about the discretisation error of a simulation; empty if it does.
    function difference_of_meshes(simulation, coarse) result(why)

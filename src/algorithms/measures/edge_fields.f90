@@ -20,7 +20,7 @@ module mfv_edge_fields
    use mfv_zone_edges, only: is_beyond_corner, patch_type
    implicit none
    private
-   public :: edge_field_type, edge_fields_of, edge_quantities, most_patches, undefined_edge
+   public :: edge_field_type, edge_fields_of, edge_quantities, is_in_cycles, most_patches, undefined_edge
 
    !> A contact edge. NaN where something is not defined.
    type :: edge_field_type
@@ -39,6 +39,8 @@ module mfv_edge_fields
    !> Names of the observables of an edge after its side, in the order of its values.
    character(*), parameter :: edge_quantities(7) = [character(21) :: 'normal_intensity', 'shear_intensity', 'slip_zone', &
                                                           'asymptotic_slip_zone', 'edge_reach', 'edge_exponent', 'corner_intensity']
+   !> Whether cycles have them too, at their turning points: not what says how far the asymptotes hold.
+   logical, parameter :: is_in_cycles(size(edge_quantities)) = [.true., .true., .true., .false., .false., .false., .true.]
 
    !> Most contact patches of which intensities are found.
    integer, parameter :: most_patches = 20

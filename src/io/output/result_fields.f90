@@ -11,7 +11,7 @@ module mfv_result_fields
    use mfv_compliance, only: coupling_names
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type, turning_point_type
-   use mfv_edge_fields, only: edge_field_type, edge_quantities
+   use mfv_edge_fields, only: edge_field_type, edge_quantities, is_in_cycles
    use mfv_error_bar
    use mfv_interior, only: has_interior
    use mfv_kinds, only: wp
@@ -735,14 +735,13 @@ call list%add('contact_right', simulation%contact%model%scene%x_of_arc(patches%r
       subroutine add(side, edges)
          character(*), intent(in) :: side
          type(edge_field_type), intent(in) :: edges(:)
-         character(*), parameter :: of_state(3) = [character(20) :: 'asymptotic_slip_zone', 'edge_reach', 'edge_exponent']
          real(wp) :: values(size(edge_quantities), size(edges))
          character(:), allocatable :: meaning
          integer :: i, place
 
          values = reshape([(edges(i)%values(), i=1, size(edges))], shape(values))
          do i = 1, size(edge_quantities)
-            if (all(ieee_is_nan(values(i, :))) .or. any(edge_quantities(i) == of_state)) cycle
+            if (all(ieee_is_nan(values(i, :))) .or. .not. is_in_cycles(i)) cycle
             associate (row => observables(observable_place(side//'_'//trim(edge_quantities(i)))))
                meaning = trim(row%meaning)
                place = index(meaning, ' at the end')
