@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ._suggestions import some
 from .errors import MfvError, input_error
 
 Array = NDArray[np.float64]
@@ -654,7 +655,7 @@ def missing_columns(label: str, wanted: Names, names: Sequence[str]) -> Exceptio
     """The InputError about wanted columns that are not among names."""
     missing = [str(keys) if isinstance(keys, int) else keys[-1] for keys in wanted.values() if not _places(names, keys)]
     short = [word.upper() if len(word) == 1 else word for word in missing]
-    there = ", ".join(_shown(name) for name in names) or "none"
+    there = some([_shown(name) for name in names]) or "none"
     return input_error(f"{label}: no column {', '.join(short)}; there are {there}")
 
 

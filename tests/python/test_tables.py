@@ -12,6 +12,7 @@ import pytest
 
 import mfv
 from mfv import Body, Mesh, Scene, Step, errors, identify, profiles, tables
+from mfv._suggestions import suggestion
 
 X = [-0.2, -0.1, -0.05, 0.0, 0.05, 0.1, 0.25]
 HEIGHT = [0.04, 0.01, 0.0025, 0.0, 0.0025, 0.01, 0.0625]
@@ -130,7 +131,7 @@ def test_a_load_history_from_other_programs(tmp_path: Path) -> None:
     contents = (
         "\ufefftangential_force\n" + "\n".join(map(str, loads)),
         "# Time tangential_force\n" + "\n".join(f"{row}\t{load}" for row, load in enumerate(loads)),
-        'Test A\n"time";"tangential_force";\n' + written.replace("\n", ";\n") + ";",
+        'Test A\n"Time [s]";"tangential_force";\n' + written.replace("\n", ";\n") + ";",
     )
     body = Body.disk(0.25, rigid=True)
     for content, encoding in itertools.product(contents, ("utf-8", "utf-16")):
@@ -147,8 +148,8 @@ def test_a_load_history_from_other_programs(tmp_path: Path) -> None:
             "columns 2 and 3 have the same name, Tangential_Force; remove one",
         ),
         (
-            "Time (s);tangential_force\n0;1e-4\n",
-            r"unknown column 'Time .s.'; columns are normal_force .*, and time, which is ignored",
+            "Time (s);Tangential_Force [N/mm]\n0;1e-4\n",
+            r"unknown column 'Tangential_Force .N/mm.'; write tangential_force without its unit, and numbers in the units of the case",
         ),
         ("time;tangential_force\n10:30:05;1e-4\n", "loads.csv:2:1: must be two numbers"),
     ):
@@ -470,3 +471,14 @@ def test_rows_in_reverse_order_are_named() -> None:
     loop.tangential_force, loop.shift = loop.tangential_force[::-1].copy(), loop.shift[::-1].copy()
     warnings = "; ".join(identify.fit(case, loop, {"friction%mu": 0.5, "rig_stiffness": 8.0e4}).warnings)
     assert "the loop runs the wrong way round, friction would do negative work" in warnings
+
+
+def test_messages_about_names_list_only_a_few() -> None:
+    many = [f"column_{i:03}" for i in range(130)]
+    assert suggestion("column_12", many, listed_by="'mfv info'").endswith("? 'mfv info' lists all")
+    assert suggestion("xyz", many, listed_by="'mfv info'") == (
+        "; choose from column_000, column_001, column_002, column_003, column_004 and 125 others, which 'mfv info' lists"
+    )
+    assert suggestion("xyz", ["a", "b"]) == "; choose from a, b"
+    message = str(tables.missing_columns("loops.csv", {"force": ("q",)}, many))
+    assert message.endswith("no column Q; there are column_000, column_001, column_002, column_003, column_004 and 125 others")

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .. import drawing
-from .._suggestions import suggestion
+from .._suggestions import LISTED_BY, suggestion
 from .axes import as_written
 from .dataset import flagged, label
 
@@ -85,7 +85,7 @@ def lines(table: xarray.Dataset, column: str | None = None, over: str | None = N
 def _chosen(given: str | None, known: list[str], usual: list[str], kind: str) -> str:
     """A name, or the usual one. Raises ValueError."""
     if given is not None and given not in known:
-        raise ValueError(f"no {kind} '{given}' in the table{suggestion(given, known)}")
+        raise ValueError(f"no {kind} '{given}' in the table{suggestion(given, known, listed_by=LISTED_BY)}")
     if given is None and not usual:
         raise ValueError(f"the table has no {kind} to draw over; 'mfv info' lists its columns")
     return usual[0] if given is None else given

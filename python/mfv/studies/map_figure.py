@@ -15,7 +15,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from .. import drawing
-from .._suggestions import suggestion
+from .._suggestions import LISTED_BY, suggestion
 from ..views import is_named
 from .dataset import flagged, label
 from .maps import FAILED, OPEN, PARTIAL, SLIDING, STICK, YIELDING, polygons
@@ -64,7 +64,7 @@ def regimes(table: xarray.Dataset, column: str | None = None, ax: Axes | None = 
     name = str(table.attrs["map_contour"] if column is None else column)
     known = [str(one) for one in table.data_vars if table[one].dims == table["case"].dims and table[one].dtype.kind in "biuf"]
     if name not in known:
-        raise ValueError(f"no column '{name}' in the table{suggestion(name, known)}")
+        raise ValueError(f"no column '{name}' in the table{suggestion(name, known, listed_by=LISTED_BY)}")
     axes = ax or Figure(figsize=(5.6, 4.4), layout="constrained").subplots()
     across, up = (str(one) for one in table.attrs["map_axes"])
     x, y = table[across].values, table[up].values

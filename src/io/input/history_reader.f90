@@ -126,13 +126,15 @@ contains
                                     ' have the same name, '//written(i)%text//'; remove one of them', error)
                return
             end if
-            if (has_word(list//' '//ignored, name)) cycle
+            if (has_word(list//' '//ignored, name) .or. without_unit(name) == ignored) cycle
             if (name == '') then
                call reader%complain(group, 1, 'file', path//': column '//to_text(i)//' has no name', error)
                return
             end if
             call suggest(name, known, '', advice)
             if (any(name == ['p', 'q', 'm'])) advice = '; P, Q and M are normal_force, tangential_force and moment'
+            if (has_word(list, without_unit(name))) &
+               advice = '; write '//without_unit(name)//' without its unit, and numbers in the units of the case'
             if (advice == '') advice = '; columns are'//list//', and '//ignored//', which is ignored'
             call reader%complain(group, 1, 'file', path//': unknown column '''//written(i)%text//''''//advice, error)
             return
@@ -292,6 +294,14 @@ contains
          if (table%names(column)%text == name) return
       end do
    end function column_of
+
+   !> The name of a column without a unit in brackets.
+   pure function without_unit(name) result(bare)
+      character(*), intent(in) :: name
+      character(:), allocatable :: bare
+
+      bare = trim(name(:scan(name//'[', '[(') - 1))
+   end function without_unit
 
    !> Error about a column: of the file, or the list of a key.
    subroutine complain(reader, table, column, why, error)
