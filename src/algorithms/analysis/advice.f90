@@ -9,7 +9,7 @@ module mfv_advice
    use mfv_observables, only: error_edges, error_place, error_stick
    use mfv_observer, only: observer_type, relay_type
    use mfv_profile_sampling, only: negligible_pressure
-   use mfv_resolution, only: poorest_patch, undersampling
+   use mfv_resolution, only: poorest_patch, refinement_for_layers, undersampling
    use mfv_scene
    use mfv_simulation, only: history_none, new_simulation, simulation_type, states_steps
    use mfv_slip_zones, only: largest_resolved_error
@@ -81,6 +81,8 @@ module mfv_advice
       !> Nodes in contact over &mesh nodes. Linear solves with `nodes` nodes in contact, and their exponent of growth with the
       !> nodes.
       real(wp) :: density = 0.0_wp, solves = 0.0_wp, nodes = 1.0_wp, growth = 0.0_wp
+      !> Nodes in contact that resolve the layers, as the warnings of a run ask for.
+      real(wp) :: layer_nodes = 0.0_wp
       logical :: known(advice_count) = .false.
       !> Number of pairs, and of those that both resolve the slip zones; sum over the pairs of the squared nodes in contact
       !> for which the width of the slip zones predicts an error 1 of the dissipation.
@@ -177,6 +179,7 @@ contains
                                             (slip_safety*law%slip_law/(law%pairs*safety(advice_dissipation)))**2)
       law%density = real(fine%contact%state%contact_nodes(), wp)/(3*advice%pair_nodes(size(advice%pair_nodes)))
       law%nodes = max(fine%contact%state%contact_nodes(), 1)
+      law%layer_nodes = refinement_for_layers(fine)*law%nodes
       law%solves = max(fine%contact%system%solves, 1)
       law%growth = max(log(law%solves/max(coarse%contact%system%solves, 1))/log(3.0_wp), 0.0_wp)
       call add_interval_laws(law, fine)
@@ -400,7 +403,13 @@ contains
             advice%message = advice%message//', because its slip zones are much narrower than the contact'
          return
       end if
-      advice%contact_nodes = ceiling(max(maxval(advice%needed_nodes, mask=advice%known), real(fewest_nodes, wp)))
+      if (law%layer_nodes > most_nodes*law%density) then
+         advice%status = MFV_INPUT_ERROR
+         advice%message = 'the layers need about '//to_text(law%layer_nodes/law%density, 2)// &
+                          ' nodes, more than the limit of '//to_text(most_nodes)
+         return
+      end if
+      advice%contact_nodes = ceiling(max(maxval(advice%needed_nodes, mask=advice%known), real(fewest_nodes, wp), law%layer_nodes))
       advice%nodes = mesh_of_at_least(scene, advice%contact_nodes/law%density)
       advice%contact_nodes = nint(advice%nodes*law%density)
    end subroutine choose_nodes

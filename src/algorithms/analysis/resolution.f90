@@ -23,7 +23,7 @@ module mfv_resolution
    implicit none
    private
    public :: find_unresolved, unresolved_type, add_unresolved, is_unresolved, all_quantities, undersampling, poorest_patch, &
-             fewest_patch_nodes, find_unresolved_observables
+             fewest_patch_nodes, find_unresolved_observables, refinement_for_layers
 
    !> What a mesh does not resolve.
    type :: unresolved_type
@@ -380,39 +380,70 @@ contains
       end associate
    end subroutine check_rounded_edges
 
-   !> Layers thinner than a few intervals: their stresses change over their thickness at the edges of the contact. Nearly
-   !> incompressible ones on a rigid body are squeezed out from where the mesh sees no difference of pressure.
+   !> Layers thinner than a few intervals.
    subroutine check_thin_layers(simulation, upper, unresolved)
       type(simulation_type), intent(in) :: simulation
       logical, intent(in) :: upper
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
+      character(:), allocatable :: names
+      real(wp) :: intervals
+
+      call measure_first_layer(simulation, upper, names, intervals)
+      if (names == '' .or. intervals >= resolved_nodes) return
+      associate (model => simulation%contact%model, state => simulation%contact%state)
+         associate (thickness => intervals*minval(model%width, mask=in_contact(state%status)))
+            call add_unresolved(unresolved, names, 'the first layer of the '//trim(merge('upper', 'lower', upper))//' body is '// &
+                                to_text(intervals, 2)//' intervals thick', &
+                                'use '//trim(needed_mesh(model, state, thickness, resolved_nodes)))
+         end associate
+      end associate
+   end subroutine check_thin_layers
+
+   !> Intervals in the thickness of a body's first layer, and the names of what depends on them: stresses change over the
+   !> thickness at the edges of the contact; nearly incompressible layers on a rigid body are squeezed out from where the mesh
+   !> sees no difference of pressure. No names: no layers, or they do not matter.
+   subroutine measure_first_layer(simulation, upper, names, intervals)
+      type(simulation_type), intent(in) :: simulation
+      logical, intent(in) :: upper
+      character(:), allocatable, intent(out) :: names
+      real(wp), intent(out) :: intervals
       !> Shear compliance over the normal one of a strip that is nearly incompressible; relative change of compliance that matters.
       real(wp), parameter :: incompressible = 10.0_wp, least_change = 0.01_wp
       type(body_type) :: body
       type(layers_type) :: layers
-      character(:), allocatable :: name, names
-      real(wp) :: interval, thickness
+      character(:), allocatable :: name
 
+      names = ''
+      intervals = huge(intervals)
       if (.not. simulation%contact%model%scene%has_layers(upper)) return
       associate (model => simulation%contact%model, state => simulation%contact%state)
          body = model%scene%lower
          if (upper) body = model%scene%upper
          name = trim(merge('upper', 'lower', upper))
          layers = body%elasticity%layers()
-         interval = minval(model%width, mask=in_contact(state%status))
-         thickness = body%elasticity%depth_of(1)
-         names = ''
-         associate (below => layers%compliance((0.0_wp, 0.0_wp)), endless => layers%layer(1)%endless)
-            if (maxval(abs(below - endless)) > least_change*maxval(abs(endless))) &
-               names = name//'_tension largest_'//name//'_tension largest_'//name//'_interface_tension largest_'//name// &
-                       '_interface_shear'
-         end associate
-         if (layers%rigid_base .and. layers%uniform(1, 1) > incompressible*layers%uniform(2, 2)) names = all_quantities(simulation)
-         if (names == '' .or. thickness >= resolved_nodes*interval) return
-         call add_unresolved(unresolved, names, 'the first layer of the '//name//' body is '//to_text(thickness/interval, 2)// &
-                             ' intervals thick', 'use '//trim(needed_mesh(model, state, thickness, resolved_nodes)))
+         intervals = body%elasticity%depth_of(1)/minval(model%width, mask=in_contact(state%status))
       end associate
-   end subroutine check_thin_layers
+      associate (below => layers%compliance((0.0_wp, 0.0_wp)), endless => layers%layer(1)%endless)
+         if (maxval(abs(below - endless)) > least_change*maxval(abs(endless))) &
+            names = name//'_tension largest_'//name//'_tension largest_'//name//'_interface_tension largest_'//name// &
+                    '_interface_shear'
+      end associate
+      if (layers%rigid_base .and. layers%uniform(1, 1) > incompressible*layers%uniform(2, 2)) names = all_quantities(simulation)
+   end subroutine measure_first_layer
+
+   !> Factor by which the mesh must be refined for the layers of both bodies; at most 1 if it resolves them.
+   real(wp) function refinement_for_layers(simulation) result(factor)
+      type(simulation_type), intent(in) :: simulation
+      character(:), allocatable :: names
+      real(wp) :: intervals
+      integer :: body
+
+      factor = 0.0_wp
+      do body = 1, 2
+         call measure_first_layer(simulation, body == 2, names, intervals)
+         if (names /= '') factor = max(factor, resolved_nodes/intervals)
+      end do
+   end function refinement_for_layers
 
    !> The end of a surface that is no corner by design: the pressure there has no limit.
    subroutine check_surface_ends(simulation, unresolved)
