@@ -5,6 +5,7 @@ tests/python/test_fits_independent.py has histories with slip.
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -151,6 +152,19 @@ def test_no_direction_is_special(interference: float) -> None:
             assert result.summary.get(name, 0.0) == pytest.approx(found[0][0].summary.get(name, 0.0), rel=1e-8), name
         for name in ("peak_pressure", "peak_shear", "lower_tension", "upper_tension", "largest_lower_tension"):
             assert result.observables[name] == pytest.approx(found[0][0].observables[name], rel=1e-8), name
+
+
+@pytest.mark.parametrize("nodes", [60, 240])
+@pytest.mark.parametrize("motion", [-3.0, -1.0, 1.0])
+def test_warnings_see_across_the_seam(motion: float, nodes: int) -> None:
+    """Opposite slip meets opposite and below the pin, with no stick zone or a narrow one between: the same warnings in all directions,
+    of which some have the place at the ends of the mesh."""
+    found = []
+    for name in ("shift", "approach"):
+        step = mfv.Step(**{name: motion * INTERFERENCE})
+        result = solved(press(), step, nodes=nodes, bore=BRONZE, friction=mfv.Friction.coulomb(0.02))
+        found.append([re.sub(r"x = [-+.\de]+", "x", warning) for warning in result.warnings])
+    assert found[0] and found[0] == found[1]
 
 
 def test_a_rotating_load_makes_a_pin_creep() -> None:

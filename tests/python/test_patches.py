@@ -327,3 +327,29 @@ def test_peaks_between_opposite_slip_are_not_resolved_on_either_side() -> None:
     assert names["left", "full"] == names["right", "full"] >= {"peak_pressure", "peak_shear"}
     assert names["left", "goodman"] == names["right", "goodman"]
     assert "peak_pressure" not in names["left", "goodman"]
+
+
+@pytest.mark.parametrize("layered", [True, False])
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_exponents_of_small_outermost_patches_are_not_resolved(side: str, layered: bool) -> None:
+    """A small bump beside a large one, of a node or two with next to none of the force: only the exponent at its edge is in doubt,
+    since whether the node slips is chance; nothing is without it."""
+    x = np.linspace(-3.0, 3.0, 2401)
+    outwards = x if side == "right" else -x
+    layers = [mfv.Layer(thickness=0.5, youngs_modulus=2e5, poisson_ratio=0.25)] if layered else []
+    body = mfv.Body.half_plane(youngs_modulus=7e4, poisson_ratio=0.2, layers=layers)
+    for rise, poor in ((0.048, True), (0.07, False)) if layered else ((0.0595, True), (0.07, False)):
+        heights = np.minimum(0.05 * x**2, rise + 4.0 * (outwards - 2.0) ** 2)
+        scene = mfv.Scene(
+            body,
+            mfv.Body.profile(x, heights, rigid=True),
+            mesh=mfv.Mesh(nodes=401, half_width=3.0),
+            friction=mfv.Friction.coulomb(0.3),
+            steps=[mfv.Step(normal_force=3000.0), mfv.Step(tangential_force=890.0 if side == "left" else -890.0)],
+        )
+        result = mfv.run(scene)
+        force = result.patches.normal_force
+        assert (len(force) == 2 and force.min() < 0.01 * force.sum()) == poor
+        assert f"{side}_edge_exponent" in result.observables
+        assert [name for name in result.unresolved if name.endswith("exponent")] == [f"{side}_edge_exponent"] * poor
+        assert "peak_pressure" not in result.unresolved

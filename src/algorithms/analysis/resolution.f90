@@ -224,6 +224,39 @@ contains
       if (simulation%cycle_count == 0) names = largest_tensions(simulation)
    end function tensions_at_end
 
+   !> The contact patches. Where the surfaces repeat, the ends of the mesh are neighbours: a last patch that continues in the first
+   !> one contains its nodes as those after the last node.
+   function patches_of(simulation) result(patches)
+      type(simulation_type), intent(in) :: simulation
+      type(zone_type), allocatable :: patches(:)
+
+      associate (model => simulation%contact%model)
+         patches = zones_of(in_contact(simulation%contact%state%status))
+         associate (n => model%nodes(), m => size(patches))
+            if (m < 2 .or. .not. ends_are_neighbours(model)) return
+            if (patches(1)%first > 1 .or. patches(m)%last < n) return
+            patches(m)%last = n + patches(1)%last
+         end associate
+      end associate
+      patches = patches(2:)
+   end function patches_of
+
+   !> Whether the surfaces repeat beyond both ends of the mesh.
+   pure logical function ends_are_neighbours(model)
+      type(contact_model_type), intent(in) :: model
+
+      ends_are_neighbours = model%repeats_beyond(1, -1) .and. model%repeats_beyond(model%nodes(), 1)
+   end function ends_are_neighbours
+
+   !> The nodes of a zone, also of one across the ends of a mesh of `n` nodes.
+   pure function nodes_of(zone, n) result(nodes)
+      type(zone_type), intent(in) :: zone
+      integer, intent(in) :: n
+      integer :: nodes(zone%last - zone%first + 1), i
+
+      nodes = [(modulo(i - 1, n) + 1, i=zone%first, zone%last)]
+   end function nodes_of
+
    !> The contact patch with the fewest nodes among those that matter: that carry a part of the normal force, or the peak pressure.
    function poorest_patch(simulation) result(poorest)
       type(simulation_type), intent(in) :: simulation
@@ -233,47 +266,76 @@ contains
       integer :: i, peak
 
       associate (model => simulation%contact%model, state => simulation%contact%state)
-         patches = zones_of(in_contact(state%status))
+         patches = patches_of(simulation)
          peak = maxloc(state%fields%pressure, dim=1)
          poorest = zone_type(1, size(state%status))
          do i = 1, size(patches)
-            associate (first => patches(i)%first, last => patches(i)%last)
-               if (last - first >= poorest%last - poorest%first) cycle
-               if (sum(state%fields%pressure(first:last)*model%width(first:last)) < least_part*state%fields%force(motion_approach) &
-                   .and. (peak < first .or. peak > last)) cycle
-               poorest = patches(i)
+            if (patches(i)%last - patches(i)%first >= poorest%last - poorest%first) cycle
+            associate (nodes => nodes_of(patches(i), model%nodes()))
+               if (sum(state%fields%pressure(nodes)*model%width(nodes)) < least_part*state%fields%force(motion_approach) &
+                   .and. .not. any(nodes == peak)) cycle
             end associate
+            poorest = patches(i)
          end do
       end associate
    end function poorest_patch
 
-   !> Contact patches with few nodes.
+   !> Contact patches with few nodes. With coupling the exponents at the edges depend on whether the outermost nodes slip, even if
+   !> the outermost patches carry next to nothing.
    subroutine check_patches(simulation, unresolved)
       type(simulation_type), intent(in) :: simulation
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
-      character(:), allocatable :: why, advice, names
-      type(zone_type) :: patch
-      integer :: nodes, patches
+      character(:), allocatable :: advice, names
+      type(zone_type), allocatable :: patches(:)
+      type(zone_type) :: poorest
+      logical :: couples, poor(2)
 
-      patch = poorest_patch(simulation)
-      nodes = patch%last - patch%first + 1
-      if (nodes >= fewest_patch_nodes) return
-      associate (model => simulation%contact%model, status => simulation%contact%state%status)
-         patches = size(zones_of(in_contact(status)))
-         why = 'only '//to_text(nodes)//trim(merge(' node is  ', ' nodes are', nodes == 1))//' in contact'
-         if (patches > 1) why = why//' in the patch near x = '//to_text(model%x((patch%first + patch%last)/2), 4)//', one of '// &
-                                to_text(patches)//' patches with '//to_text(count(in_contact(status)))//' nodes'
-         advice = ''
-         call advise_on_heights(model%scene%lower, 'lower', advice)
-         call advise_on_heights(model%scene%upper, 'upper', advice)
-         names = trim(all_quantities(simulation))
-         ! With coupling the exponents depend on whether the outermost nodes slip.
-         if (model%couples(block_wt)) names = names//' left_edge_exponent right_edge_exponent'
-         call add_unresolved(unresolved, names, why, advice//'use '// &
-                             trim(needed_mesh(model, simulation%contact%state, sum(model%width(patch%first:patch%last)), &
-                                              fewest_patch_nodes))//' for '// &
-                             to_text(fewest_patch_nodes)//' nodes in each patch')
+      poorest = poorest_patch(simulation)
+      patches = patches_of(simulation)
+      associate (model => simulation%contact%model, outer => patches([1, size(patches)]))
+         ! A patch across the ends of the mesh has no outermost edges.
+         couples = model%couples(block_wt) .and. all(patches%last <= model%nodes())
+         if (nodes_in(poorest) < fewest_patch_nodes) then
+            advice = ''
+            call advise_on_heights(model%scene%lower, 'lower', advice)
+            call advise_on_heights(model%scene%upper, 'upper', advice)
+            names = trim(all_quantities(simulation))
+            if (couples) names = names//' left_edge_exponent right_edge_exponent'
+            call add_patch(poorest, names, advice)
+         else if (couples) then
+            poor = [nodes_in(outer(1)), nodes_in(outer(2))] < fewest_patch_nodes
+            names = 'left_edge_exponent'
+            if (.not. poor(1)) names = 'right_edge_exponent'
+            if (all(poor)) names = names//' right_edge_exponent'
+            if (any(poor)) call add_patch(outer(merge(1, 2, poor(1))), names, '')
+         end if
       end associate
+
+   contains
+
+      pure integer function nodes_in(patch)
+         type(zone_type), intent(in) :: patch
+
+         nodes_in = patch%last - patch%first + 1
+      end function nodes_in
+
+      !> Add the quantities that a patch does not resolve; `advice` comes before that on the mesh.
+      subroutine add_patch(patch, quantities, advice)
+         type(zone_type), intent(in) :: patch
+         character(*), intent(in) :: quantities, advice
+         character(:), allocatable :: why
+
+         associate (model => simulation%contact%model, state => simulation%contact%state, &
+                    nodes => nodes_of(patch, simulation%contact%model%nodes()))
+            why = 'only '//to_text(size(nodes))//trim(merge(' node is  ', ' nodes are', size(nodes) == 1))//' in contact'
+            if (size(patches) > 1) why = why//' in the patch near x = '//to_text(model%x(nodes((size(nodes) + 1)/2)), 4)// &
+                                         ', one of '//to_text(size(patches))//' patches with '// &
+                                         to_text(count(in_contact(state%status)))//' nodes'
+            call add_unresolved(unresolved, quantities, why, advice//'use '// &
+                                trim(needed_mesh(model, state, sum(model%width(nodes)), fewest_patch_nodes))//' for '// &
+                                to_text(fewest_patch_nodes)//' nodes in each patch')
+         end associate
+      end subroutine add_patch
    end subroutine check_patches
 
    !> Add to `advice` what to do about a profile so steep that its heights are probably in another unit than its positions.
@@ -581,7 +643,7 @@ contains
 
    !> A largest shear at the outermost node of a patch: it lies in the last interval, where the pressure vanishes and limits it. It
    !> is resolved if it hardly changes from node to node. Nor is a largest shear resolved within few nodes of an edge that sticks
-   !> now, if slip zones had too few nodes, nor one near a corner of a flat punch, where it has no limit; at the corner its error bar
+   !> now, if slip zones had too few nodes, nor one near a corner of a flat punch, where it has no limit; there its error bar
    !> says so.
    subroutine check_largest_shear(simulation, unresolved)
       type(simulation_type), intent(in) :: simulation
@@ -635,28 +697,35 @@ contains
    !> Stick zones without a node, between neighbouring nodes that slip in opposite directions, which change their number. (A maximum
    !> of the shear near the friction limit inside a stick zone is no sign of a slip zone: former edges have one on any mesh.) And
    !> stick zones with few nodes between opposite slip, in which the shear traction changes its sign: the stress along the surface
-   !> would have no limit without them. The text names the first of them.
+   !> would have no limit without them. The text names the first of them. Where the surfaces repeat, the ends of the mesh are
+   !> neighbours.
    subroutine check_stick_zones(simulation, unresolved)
       type(simulation_type), intent(in) :: simulation
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
       type(zone_type), allocatable :: zones(:)
       character(:), allocatable :: names
-      integer :: i, n, nodes
+      !> The nodes, and where the surfaces repeat the first ones (`repeated`) once more; their statuses.
+      integer, allocatable :: order(:), status(:)
+      integer :: i, last, n, nodes, repeated
 
-      associate (model => simulation%contact%model, status => simulation%contact%state%status)
+      associate (model => simulation%contact%model)
          if (.not. model%tangential .or. .not. allocated(model%scene%friction%law)) return
          n = model%nodes()
-         zones = pack([(zone_type(i, i + 1), i=1, n - 1)], slip_sign(status(:n - 1))*slip_sign(status(2:)) < 0)
+         repeated = merge(resolved_nodes + 1, 0, ends_are_neighbours(model))
+         order = nodes_of(zone_type(1, n + repeated), n)
+         status = simulation%contact%state%status(order)
+         last = n - 1 + min(repeated, 1)
+         zones = pack([(zone_type(i, i + 1), i=1, last)], slip_sign(status(:last))*slip_sign(status(2:last + 1)) < 0)
          if (size(zones) > 0) call add_unresolved(unresolved, 'stick_zones'//peaks_near(zones), 'near x = '// &
                                                  to_text(model%x(zones(1)%first), 4)//' a stick zone has no node', 'use more nodes')
          zones = zones_of(holds(status))
-         zones = pack(zones, [(is_narrow_stick_zone(status, zones(i)), i=1, size(zones))])
+         zones = pack(zones, [(is_narrow_stick_zone(status, zones(i)) .and. zones(i)%first <= n + 1, i=1, size(zones))])
          names = adjustl(trim(largest_tensions(simulation))//peaks_near(zones))
          if (size(zones) > 0 .and. names /= '') then
             nodes = zones(1)%last - zones(1)%first + 1
-            call add_unresolved(unresolved, names, 'near x = '//to_text(model%x(zones(1)%first), 4)//' a stick zone between '// &
-                                'opposite slip has only '//to_text(nodes)//trim(merge(' node ', ' nodes', nodes == 1)), &
-                                'use more nodes')
+            call add_unresolved(unresolved, names, 'near x = '//to_text(model%x(order(zones(1)%first)), 4)// &
+                                ' a stick zone between opposite slip has only '//to_text(nodes)// &
+                                trim(merge(' node ', ' nodes', nodes == 1)), 'use more nodes')
          end if
          call check_jumps()
          call check_narrow_zones()
@@ -674,10 +743,10 @@ contains
          names = adjustl(largest_tensions(simulation))
          if (names == '') return
          associate (model => simulation%contact%model, state => simulation%contact%state)
-            associate (limit => model%static_friction*state%fields%pressure, shear => state%fields%shear)
-               do node = 1, model%nodes() - 1
-                  do next = node + 1, min(node + reach, model%nodes())
-                     if (.not. all(in_contact(state%status(node:next))) .or. shear(node)*shear(next) >= 0.0_wp) cycle
+            associate (limit => model%static_friction(order)*state%fields%pressure(order), shear => state%fields%shear(order))
+               do node = 1, n
+                  do next = node + 1, min(node + reach, size(order))
+                     if (.not. all(in_contact(status(node:next))) .or. shear(node)*shear(next) >= 0.0_wp) cycle
                      if (abs(shear(node)) < nearly*limit(node) .or. abs(shear(next)) < nearly*limit(next)) cycle
                      call add_unresolved(unresolved, names, 'near x = '//to_text(model%x(node), 4)//' the shear changes its '// &
                                          'sign within '//to_text(next - node)//trim(merge(' interval ', ' intervals', &
@@ -716,12 +785,14 @@ contains
       function peaks_near(zones) result(names)
          type(zone_type), intent(in) :: zones(:)
          character(len=25) :: names
+         integer :: peaks(3), image
 
          names = ''
          if (.not. simulation%contact%model%compliance%elastic_block(block_wt)) return
-         associate (peak => maxloc(simulation%contact%state%fields%pressure, dim=1))
-            if (any(zones%first <= peak + 1 .and. zones%last >= peak - 1)) names = ' peak_pressure peak_shear'
-         end associate
+         peaks = maxloc(simulation%contact%state%fields%pressure, dim=1) + n*[0, -1, 1]
+         do image = 1, merge(3, 1, repeated > 0)
+            if (any(zones%first <= peaks(image) + 1 .and. zones%last >= peaks(image) - 1)) names = ' peak_pressure peak_shear'
+         end do
       end function peaks_near
    end subroutine check_stick_zones
 
