@@ -22,6 +22,8 @@ BODIES = """&body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /
 &body shape='disk', radius=0.25, rigid=.true. /
 """
 COMPLETE, INPUT, EARLY = 0, 2, 3
+#: Examples with a warning, which their text or the guide explains.
+WARNED_OF = ("disk_on_plane", "press_fit", "wear")
 
 
 def mfv_run(*arguments, cwd):
@@ -38,6 +40,7 @@ def case(folder, text, name="case.nml"):
 def test_examples_have_a_certificate(example, tmp_path):
     run = mfv_run(example, cwd=tmp_path)
     assert run.returncode == COMPLETE, run.stderr
+    assert example.stem in WARNED_OF or "\nwarning" not in run.stdout, run.stdout
     assert run.stderr == ""
     with h5py.File(next(tmp_path.glob("*.h5"))) as result:
         assert result["certificate/largest"][()] < 1e-10
@@ -174,6 +177,30 @@ MINDLIN = """&scene coupling='goodman', length_unit='mm', force_unit='N' /
 &step tangential_force={force} /
 &output file='{name}.h5'{more} /
 """
+
+
+@pytest.mark.parametrize("example", ["coating", "rolling"])
+def test_the_summary_has_the_bars_of_what_it_shows(example, tmp_path):
+    """Every number of the summary that has a bar in the file, and the others of the main ones."""
+    run = mfv_run("--estimate", ROOT / f"examples/{example}.nml", cwd=tmp_path)
+    assert run.returncode == COMPLETE
+    lines = run.stdout.splitlines()
+    shown = set(re.findall(r"-?\d\S*(?=[, ]|$)", " ".join(line for line in lines if not line.startswith("error estimate"))))
+    bars = " ".join(line for line in lines if line.startswith("error estimate"))
+    with h5py.File(tmp_path / f"{example}.h5") as result:
+        estimate = result["error_estimate"]
+        names = [name for name in estimate if f"{name}_error" in estimate and not name.endswith(("_x", "_y", "_number"))]
+        missing = [
+            name for name in names if written(estimate[name][()]) in shown and f" {written(estimate[name][()])} " not in bars
+        ]
+    assert not missing and len(names) > 20
+    assert example == "rolling" or re.search(r"shear at lower interfaces \S+ N/mm\^2 \+- \S+ \(", bars)
+
+
+def written(value):
+    """A number as in the summary, six digits."""
+    text = f"{value:.6g}"
+    return text if abs(value) >= 1e-3 else re.sub(r"e-0", "e-", f"{value:.5e}".replace("+", ""))
 
 
 def test_error_estimate_in_summary_and_file(tmp_path):

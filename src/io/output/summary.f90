@@ -77,7 +77,7 @@ contains
                                      simulation%contact%certificate%by_mean_square))//' '// &
                           to_text(simulation%contact%certificate%increment_dissipation_error, 2)// &
                           ' of the dissipation of a load segment')
-         if (allocated(simulation%estimate)) call add_estimate(text, case, simulation)
+         if (allocated(simulation%estimate)) call add_estimate(text, seen, case, simulation)
          if (allocated(simulation%sensitivity)) call add_sensitivity(text, simulation)
          do i = 1, size(warnings)
             call add_line(text, 'warning', warnings(i)%text)
@@ -166,20 +166,14 @@ contains
       if (words /= '') call add_line(text, 'tension at the end', words(3:))
    end subroutine add_tension
 
-   !> Extremes over the last cycle, the rows of &history or the steps; of steps only if they exceed the values at the
-   !> end.
+   !> Extremes over the last cycle, the rows of &history or the steps.
    subroutine add_extremes(text, fields, simulation)
       character(:), allocatable, intent(inout) :: text
       type(field_type), intent(in) :: fields(:)
       type(simulation_type), intent(in) :: simulation
-      character(*), parameter :: names(4) = [character(13) :: 'lower_tension', 'upper_tension', 'pressure', 'shear']
       character(:), allocatable :: over
-      integer :: i
 
-      if (simulation%stretch() == over_steps) then
-         if (.not. any([(is_above_end(trim(names(i))), i=1, size(names))]) .and. &
-             .not. simulation%contact%model%scene%is_layered()) return
-      end if
+      if (.not. shows_extremes(fields, simulation)) return
       over = 'over all steps: '
       if (simulation%stretch() == over_rows) over = 'over all rows: '
       if (simulation%ends_with_cycle()) over = 'over the last cycle: '
@@ -192,19 +186,6 @@ contains
       call add('stick ratio', 'smallest', 'smallest_stick_ratio', 'largest', 'largest_stick_ratio')
 
    contains
-
-      !> Whether the largest value exceeds the one at the end by more than a rounding error.
-      pure logical function is_above_end(name)
-         character(*), intent(in) :: name
-         integer :: largest, last
-
-         largest = field_named(fields, 'largest_'//name)
-         last = max(field_named(fields, name), field_named(fields, 'peak_'//name))
-         is_above_end = largest > 0 .and. last > 0
-         ! NaN: singular.
-         if (is_above_end) is_above_end = ieee_is_finite(fields(largest)%values(1)) .and. ieee_is_finite(fields(last)%values(1))
-         if (is_above_end) is_above_end = fields(largest)%values(1) > (1.0_wp + visible)*fields(last)%values(1)
-      end function is_above_end
 
       !> A line with one or two extremes, where they exist.
       subroutine add(label, first, name_of_first, second, name_of_second)
@@ -231,6 +212,34 @@ contains
       end subroutine add_extreme
    end subroutine add_extremes
 
+   !> Whether the summary has extremes: of steps only if they exceed the values at the end, or with layers.
+   logical function shows_extremes(fields, simulation)
+      type(field_type), intent(in) :: fields(:)
+      type(simulation_type), intent(in) :: simulation
+      character(*), parameter :: names(4) = [character(13) :: 'lower_tension', 'upper_tension', 'pressure', 'shear']
+      integer :: i
+
+      shows_extremes = simulation%stretch() /= over_steps .or. simulation%contact%model%scene%is_layered()
+      do i = 1, size(names)
+         shows_extremes = shows_extremes .or. is_above_end(trim(names(i)))
+      end do
+
+   contains
+
+      !> Whether the largest value exceeds the one at the end by more than a rounding error.
+      pure logical function is_above_end(name)
+         character(*), intent(in) :: name
+         integer :: largest, last
+
+         largest = field_named(fields, 'largest_'//name)
+         last = max(field_named(fields, name), field_named(fields, 'peak_'//name))
+         is_above_end = largest > 0 .and. last > 0
+         ! NaN: singular.
+         if (is_above_end) is_above_end = ieee_is_finite(fields(largest)%values(1)) .and. ieee_is_finite(fields(last)%values(1))
+         if (is_above_end) is_above_end = fields(largest)%values(1) > (1.0_wp + visible)*fields(last)%values(1)
+      end function is_above_end
+   end function shows_extremes
+
    !> Memory of the kernels or matrices, and time of assembly.
    subroutine add_compliance(text, model)
       character(:), allocatable, intent(inout) :: text
@@ -253,24 +262,29 @@ contains
 
    !> Values with their error bars, one per line, or why there are none: of the observables that the summary shows; the file has the
    !> bars of all.
-   subroutine add_estimate(text, case, simulation)
+   subroutine add_estimate(text, seen, case, simulation)
       character(:), allocatable, intent(inout) :: text
+      type(field_type), intent(in) :: seen(:)
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
-      character(*), parameter :: names(18) = [character(21) :: 'largest_lower_tension', 'largest_upper_tension', &
-                                                'largest_pressure', 'largest_shear', 'largest_slip_range', 'smallest_stick_ratio', &
-                                                           'contact_length', 'contact_half_width', 'stick_ratio', 'peak_pressure', &
-                                               'peak_shear', 'dissipation', 'lower_tension', 'upper_tension', 'cycle_dissipation', &
-                                                                          'tangential_stiffness', 'secant_stiffness', 'loss_factor']
+      character(*), parameter :: names(32) = [character(31) :: &
+                 'largest_lower_tension', 'largest_upper_tension', 'largest_pressure', 'largest_shear', 'largest_lower_von_mises', &
+                                    'largest_upper_von_mises', 'largest_lower_interface_tension', 'largest_lower_interface_shear', &
+                 'largest_upper_interface_tension', 'largest_upper_interface_shear', 'largest_slip_range', 'smallest_stick_ratio', &
+                      'largest_stick_ratio', 'contact_length', 'contact_half_width', 'stick_ratio', 'peak_pressure', 'peak_shear', &
+                         'normal_force', 'approach', 'tangential_force', 'shift', 'dissipation', 'lower_tension', 'upper_tension', &
+                                         'cycle_dissipation', 'tangential_stiffness', 'secant_stiffness', 'loss_factor', 'moment', &
+                                              'rotation', 'creepage']
       !> The first ones are extremes over the last cycle, rows or steps.
-      integer, parameter :: extremes = 6
-      character(*), parameter :: words(size(names)) = [character(29) :: 'largest tension of lower body', &
-                                                             'largest tension of upper body', 'largest pressure', 'largest shear', &
-                                                                   'largest slip range', 'smallest stick ratio', 'contact length', &
-                                                               'contact half-width', 'stick ratio', 'peak pressure', 'peak shear', &
-                                                                  'dissipation', 'tension of lower body', 'tension of upper body', &
-                                                                  'cycle dissipation', 'tangential stiffness', 'secant stiffness', &
-                                                                                                                      'loss factor']
+      integer, parameter :: extremes = 13
+      character(*), parameter :: words(size(names)) = [character(38) :: &
+                            'largest tension of lower body', 'largest tension of upper body', 'largest pressure', 'largest shear', &
+                'largest von Mises stress of lower body', 'largest von Mises stress of upper body', 'tension at lower interfaces', &
+                    'shear at lower interfaces', 'tension at upper interfaces', 'shear at upper interfaces', 'largest slip range', &
+            'smallest stick ratio', 'largest stick ratio', 'contact length', 'contact half-width', 'stick ratio', 'peak pressure', &
+                    'peak shear', 'normal force', 'approach', 'tangential force', 'shift', 'dissipation', 'tension of lower body', &
+                'tension of upper body', 'cycle dissipation', 'tangential stiffness', 'secant stiffness', 'loss factor', 'moment', &
+                                                       'rotation', 'creepage']
       type(field_type), allocatable :: fields(:)
       character(:), allocatable :: meshes, value, percent
       integer :: i, first
@@ -281,7 +295,7 @@ contains
       end if
       call group_fields(case, simulation, 'error_estimate', fields)
       first = 1
-      if (simulation%stretch() == over_steps) first = extremes + 1
+      if (.not. shows_extremes(seen, simulation)) first = extremes + 1
       do i = first, size(names)
          associate (bar => simulation%estimate%bar(observable_place(trim(names(i)))))
             if (.not. bar%known) cycle
