@@ -134,6 +134,10 @@ class Group(Mapping[str, Values]):
         """The group as an xarray.Dataset with its coordinates; units and long_name as attributes. Needs xarray."""
         return _dataset(self._fields, self._coordinates)
 
+    def dimensions(self, name: str) -> tuple[str, ...]:
+        """Names of the dimensions of a quantity; () for a number. Raises NoQuantity."""
+        return self._field(name).dimensions
+
     def unit(self, name: str) -> str:
         """Unit of a quantity."""
         return self._field(name).unit

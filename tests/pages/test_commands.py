@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import re
 import shutil
@@ -534,6 +535,18 @@ def test_run_ends_by_the_signals_of_the_program(tmp_path: Path) -> None:
     assert codes == [128 + signal.SIGPIPE] * 2
     shown = shown_on_a_terminal([*COMMAND_LINE, "run", "--estimate", str(PROJECT / "examples/cycles.nml")], cwd=tmp_path)
     assert shown == b"" or b"%" in shown
+
+
+def test_rows_of_a_table_are_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """All columns with a value for each row; as read by numpy they are those of the file."""
+    result = mfv.run(PROJECT / "examples/shear_cycles.nml", output=tmp_path / "a.h5")
+    for name, row in (("cycles", "cycle"), ("history", "record"), ("patches", "patch")):
+        assert main(["info", str(tmp_path / "a.h5"), "--rows", name]) == 0
+        table = np.genfromtxt(io.StringIO(capsys.readouterr().out), delimiter=",", names=True)
+        group = getattr(result, name)
+        assert table.dtype.names[0] == row and "friction_work" not in table.dtype.names
+        for column in table.dtype.names:
+            np.testing.assert_array_equal(np.atleast_1d(table[column]), group[column], err_msg=column)
 
 
 def test_stress_is_the_program(tmp_path: Path) -> None:

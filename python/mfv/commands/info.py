@@ -10,7 +10,7 @@ import numpy as np
 
 from .._html import unit
 from .._packages import require
-from ..result import Group, Result, kept, read
+from ..result import COORDINATES, LISTS, Group, Result, kept, read
 from ..studies.plan import is_table
 from .completion import complete_files
 
@@ -21,13 +21,15 @@ NAME, HELP = "info", "print the contents of a result or of the table of a study"
 
 DESCRIPTION = """\
 Print the contents of a result: outcome, settings, loads and node counts at the end, observables of the load history,
-certificate, error estimates and sources of closed forms if there are any. For the table of a study: its columns with
-values, units and meanings.
+certificate, error estimates and sources of closed forms if there are any; or the rows of one of its tables, with commas.
+For the table of a study: its columns with values, units and meanings.
 """
 
 EXAMPLES = """\
 examples:
   mfv info mindlin.h5                 a result
+  mfv info case.h5 --rows cycles      a row for every cycle
+  mfv info case.h5 --rows cycles >cycles.csv
   mfv info study.nc                   columns of a table
 """
 
@@ -36,18 +38,33 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     file = parser.add_argument("file", type=Path, metavar="RESULT.h5", help="result file, or table of a study (.nc)")
     complete_files(file, "h5", "nc")
+    parser.add_argument("--rows", choices=LISTS, help="print the rows of this table of a result, in the units of the case")
 
 
 def run(options: argparse.Namespace) -> None:
-    """Print. Raises OSError, NotAResult."""
+    """Print. Raises OSError, ValueError, NotAResult."""
     if is_table(options.file):
+        if options.rows is not None:
+            raise ValueError(f"{options.file}: the table of a study has no --rows; 'mfv study' writes it as .csv, too")
         require("xarray", "h5netcdf")
         import xarray  # here, since results are read without it
 
         with xarray.open_dataset(options.file, engine="h5netcdf") as table:
             print(columns_of(table))
-    else:
-        print(description(read(options.file)))
+        return
+    result = read(options.file)
+    print(description(result) if options.rows is None else rows_of(result, options.rows))
+
+
+def rows_of(result: Result, name: str) -> str:
+    """A table of a result as text with commas: a line of names, and a line for each row. Raises ValueError if it has none."""
+    group = getattr(result, name)
+    if not group:
+        raise ValueError(f"the result has no {name}")
+    (row,) = COORDINATES[name]
+    names = [row, *(column for column in group if column != row and group.dimensions(column) == (row,))]
+    rows = zip(*(group[column].tolist() for column in names), strict=True)
+    return "\n".join(",".join(map(str, line)) for line in [names, *rows])
 
 
 def columns_of(table: xarray.Dataset) -> str:
