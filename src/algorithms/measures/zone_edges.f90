@@ -281,8 +281,11 @@ contains
       held = holds(state%status) .or. (slips(state%status) .and. slipped <= certified*scale)
       zones = zones_of(slips(state%status))
       patches = zones_of(in_contact(state%status))
+      patch = 1
       do i = 1, size(zones)
-         patch = findloc(patches%last >= zones(i)%last, .true., dim=1)
+         do while (patches(patch)%last < zones(i)%last)
+            patch = patch + 1
+         end do
          associate (first => zones(i)%first, last => zones(i)%last, from => patches(patch)%first, to => patches(patch)%last)
             held(first:last) = held(first:last) .or. &
                                rests(slipped(first:last), maxval(slipped(from:to), mask=slips(state%status(from:to))))
