@@ -48,6 +48,7 @@ module mfv_elasticity
       procedure :: is_circle
       procedure :: is_matrix
       procedure :: is_layered
+      procedure :: pressure_stretches
       procedure :: has_datum
       procedure :: layers
       procedure :: coat
@@ -84,6 +85,14 @@ contains
 
       is_layered = allocated(self%layer)
    end function is_layered
+
+   !> Whether a pressure can cause tension along a straight surface: by its material, see mfv_material, on layers, or where it
+   !> repeats, as its mean strain is zero there.
+   pure logical function pressure_stretches(self)
+      class(elasticity_type), intent(in) :: self
+
+      pressure_stretches = self%material%pressure_stretches() .or. self%is_layered() .or. self%period > 0.0_wp
+   end function pressure_stretches
 
    !> Whether displacements are measured at a datum: not above a rigid base, nor of a matrix.
    pure logical function has_datum(self)

@@ -161,16 +161,15 @@ contains
    type(largest_type) function largest_tension(interior) result(largest)
       type(interior_type), intent(in) :: interior
       real(wp) :: place, point(2), value, rival, rival_place
-      logical :: stretches
 
       largest%x = ieee_value(1.0_wp, ieee_quiet_nan)
       largest%y = largest%x
       largest%value = max(interior%bulk_of(1), 0.0_wp)
       if (.not. interior%half_width() > 0.0_wp) return
-      stretches = interior%body%elasticity%material%pressure_stretches()
-      if (.not. (interior%body%deforms_as_circle() .or. interior%is_sheared() .or. stretches .or. &
-                 interior%body%elasticity%is_layered() .or. interior%body%elasticity%period > 0.0_wp)) return
-      if (interior%elements%singular .or. (interior%elements%sharp .and. stretches)) then
+      if (.not. (interior%body%deforms_as_circle() .or. interior%is_sheared() .or. &
+                 interior%body%elasticity%pressure_stretches())) return
+      if (interior%elements%singular .or. &
+          (interior%elements%sharp .and. interior%body%elasticity%material%pressure_stretches())) then
          largest%value = ieee_value(1.0_wp, ieee_quiet_nan)
          return
       end if

@@ -173,8 +173,7 @@ contains
       result%largest = largest_von_mises(interior)
       result%tension = largest_tension(interior)
       result%yield_strength = interior%body%strength_of(1)
-      if (ieee_is_finite(result%largest%y)) &
-         result%yield_strength = interior%body%strength_of(interior%body%layer_at(abs(result%largest%y)))
+      if (ieee_is_finite(result%largest%y)) result%yield_strength = interior%body%strength_at(result%largest%y)
       if (allocated(request%x)) then
          result%x = request%x
          result%y = request%y
