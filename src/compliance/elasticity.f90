@@ -14,12 +14,12 @@ module mfv_elasticity
    implicit none
    private
    public :: elasticity_type, as_half_plane, as_disk, as_hole, as_matrix
-   public :: elasticity_own, elasticity_half_plane, elasticity_orthotropic, elasticity_anisotropic, elasticity_names, layer_names
+   public :: elasticity_own, elasticity_names, layer_names
 
    !> A half-plane; a disk or a hole of the radius of the surface; a user's matrix.
    integer, parameter :: as_half_plane = 1, as_disk = 2, as_hole = 3, as_matrix = 4
-   !> Choices for a body: that of its shape, or a half-plane, isotropic or not.
-   integer, parameter :: elasticity_own = 1, elasticity_half_plane = 2, elasticity_orthotropic = 3, elasticity_anisotropic = 4
+   !> Choices for a body: that of its shape, the first one, or a half-plane, isotropic or not.
+   integer, parameter :: elasticity_own = 1
    character(*), parameter :: elasticity_names = 'own half_plane orthotropic anisotropic'
    !> Materials of a layer.
    character(*), parameter :: layer_names = 'isotropic orthotropic anisotropic'
