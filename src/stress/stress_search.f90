@@ -8,7 +8,11 @@ module mfv_stress_search
    use mfv_tolerances, only: certified, visible
    implicit none
    private
-   public :: largest_type, largest_von_mises, largest_tension, find_largest_at_interfaces, estimate_in_layers
+   public :: largest_type, largest_von_mises, largest_tension, find_largest_at_interfaces, estimate_in_layers, &
+             depths_below
+
+   !> Depths over the half-width, up to that of the largest stress under an ellipse of pressure.
+   real(wp), parameter :: depths_below(6) = [0.1_wp, 0.2_wp, 0.3_wp, 0.4_wp, 0.55_wp, 0.7_wp]
 
    !> What is searched for along a line.
    integer, parameter :: surface_tension = 1, surface_von_mises = 2, interface_tension = 3, interface_shear = 4
@@ -215,8 +219,6 @@ contains
       type(interior_type), intent(in) :: interior
       real(wp), intent(out) :: tension, von_mises
       integer, parameter :: across = 24
-      !> Depths over the half-width, up to that of the largest stress under an ellipse of pressure.
-      real(wp), parameter :: depths(6) = [0.1_wp, 0.2_wp, 0.3_wp, 0.4_wp, 0.55_wp, 0.7_wp]
       real(wp), allocatable :: places(:), below(:)
       integer :: i, j
 
@@ -230,7 +232,7 @@ contains
       if (.not. interior%body%has_strength()) return
       places = interior%zone_edges(most_between=across)
       associate (elasticity => interior%body%elasticity)
-         below = [0.0_wp, interior%half_width()*depths, (elasticity%depth_of(i), i=1, size(elasticity%layer))]
+         below = [0.0_wp, interior%half_width()*depths_below, (elasticity%depth_of(i), i=1, size(elasticity%layer))]
       end associate
       do j = 1, size(below)
          von_mises = max(von_mises, maxval([(von_mises_at(interior, places(i), below(j)), i=1, size(places))]))
