@@ -3,6 +3,7 @@
 !> and eq. 6.5.
 module mfv_observables
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use mfv_body, only: body_names
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
    use mfv_edge_fields, only: edge_field_type, edge_quantities
@@ -373,7 +374,6 @@ contains
    subroutine add_extremes(extremes, values)
       type(load_extremes_type), intent(in) :: extremes
       real(wp), intent(inout) :: values(:)
-      character(*), parameter :: body(2) = ['lower', 'upper']
       integer :: i
 
       call put_extreme('largest_pressure', extremes%pressure)
@@ -381,11 +381,11 @@ contains
       call put_extreme('largest_slip_range', extremes%slip_range)
       call put_extreme('smallest_stick_ratio', extremes%lowest_stick)
       call put_extreme('largest_stick_ratio', extremes%highest_stick)
-      do i = 1, size(body)
-         call put_extreme('largest_'//body(i)//'_tension', extremes%searched(candidate_tension(i)))
-         call put_extreme('largest_'//body(i)//'_von_mises', extremes%searched(candidate_von_mises(i)))
-         call put_extreme('largest_'//body(i)//'_interface_tension', extremes%interface_tension(i))
-         call put_extreme('largest_'//body(i)//'_interface_shear', extremes%interface_shear(i))
+      do i = 1, size(body_names)
+         call put_extreme('largest_'//body_names(i)//'_tension', extremes%searched(candidate_tension(i)))
+         call put_extreme('largest_'//body_names(i)//'_von_mises', extremes%searched(candidate_von_mises(i)))
+         call put_extreme('largest_'//body_names(i)//'_interface_tension', extremes%interface_tension(i))
+         call put_extreme('largest_'//body_names(i)//'_interface_shear', extremes%interface_shear(i))
       end do
 
    contains

@@ -18,7 +18,7 @@ module mfv_load_extremes
    use mfv_motions, only: bulk_motions, motion_approach, motion_shift, motion_count
    use mfv_node_status, only: in_contact
    use mfv_state_interior, only: state_interior
-   use mfv_stress_search, only: estimate_in_layers, find_largest_at_interfaces, largest_type
+   use mfv_stress_search, only: depths_below, estimate_in_layers, find_largest_at_interfaces, largest_type
    use mfv_tolerances, only: significant, visible
    use mfv_zone_edges, only: find_patches, largest_shear, outermost_edges, patch_type, rises_at_end, zone_edges_type
    implicit none
@@ -530,8 +530,6 @@ contains
       integer, intent(in) :: side
       real(wp), intent(in) :: stress(:), bulk
       integer, parameter :: across = 12
-      !> Depths over the half-width, up to that of the largest stress under an ellipse of pressure.
-      real(wp), parameter :: depths(6) = [0.1_wp, 0.2_wp, 0.3_wp, 0.4_wp, 0.55_wp, 0.7_wp]
       integer, parameter :: most_patches = 20
       real(wp) :: sign, depth, below(3), peak(size(patches))
       logical :: left(size(patches))
@@ -547,8 +545,8 @@ contains
       do number = 1, min(size(patches), most_patches)
          i = maxloc(peak, dim=1, mask=left)
          left(i) = .false.
-         do k = 1, size(depths)
-            depth = 0.5_wp*depths(k)*patches(i)%length()
+         do k = 1, size(depths_below)
+            depth = 0.5_wp*depths_below(k)*patches(i)%length()
             do j = 1, across
                associate (place => patches(i)%left + patches(i)%length()*(j - 0.5_wp)/across)
                   below = 0.0_wp

@@ -839,7 +839,7 @@ contains
       entries(1, :) = entries(1, :)/model%width(middle - about:middle + about)
       steps = [2.0_wp*entries(1, 0) - entries(1, -1) - entries(1, 1), &
                entries(1, -1) + entries(1, 1) - entries(1, -2) - entries(1, 2)]
-      has_known_error = (model%scene%has_layers(.false.) .or. model%scene%has_layers(.true.) .or. &
+      has_known_error = (model%scene%is_layered() .or. &
                          abs(steps(1) - ratio*steps(2)) <= merge(near, alike, model%scene%lower%is_matrix())*abs(steps(1))) .and. &
                         maxval(abs(model%width(middle - about:middle + about) - model%width(node))) <= near*model%width(node)
    end function has_known_error

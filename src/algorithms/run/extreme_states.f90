@@ -194,11 +194,7 @@ contains
          type(largest_type), intent(in) :: stress
 
          associate (scene => self%contact%model%scene)
-            if (upper) then
-               strength_at = scene%upper%strength_at(stress%y)
-            else
-               strength_at = scene%lower%strength_at(stress%y)
-            end if
+            strength_at = merge(scene%upper%strength_at(stress%y), scene%lower%strength_at(stress%y), upper)
          end associate
       end function strength_at
    end subroutine find_largest_of_history
