@@ -476,11 +476,11 @@ contains
       !> The integral over all intervals at a place.
       complex(wp) function over_all(x)
          real(wp), intent(in) :: x
-         complex(wp) :: distant(4)
+         complex(wp) :: distant
          integer :: i, number
 
-         call tree%find_distant(cmplx([x, x], 0.0_wp, wp), distant, near, number)
-         over_all = sum_beyond + distant(1)
+         call tree%find_distant_along(x, distant, near, number)
+         over_all = sum_beyond + distant
          do i = 1, number
             over_all = over_all + over_intervals(x, near(1, i), near(2, i))
          end do
