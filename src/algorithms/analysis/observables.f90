@@ -7,14 +7,13 @@ module mfv_observables
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
    use mfv_edge_fields, only: edge_field_type, edge_quantities
-   use mfv_extreme_states, only: find_extremes
+   use mfv_extreme_states, only: find_extremes, find_present_tension
    use mfv_kinds, only: pi, wp
    use mfv_load_cycles, only: present_edge_fields
    use mfv_load_extremes, only: candidate_tension, candidate_von_mises, extreme_type, load_extremes_type
    use mfv_motions, only: motions, motion_count => user_motions, motion_approach, motion_shift
    use mfv_near_field, only: near_field_type
    use mfv_simulation, only: mark_loading, simulation_type
-   use mfv_state_interior, only: find_largest_tension
    use mfv_steady_stick, only: steady_stick_length
    use mfv_stress_search, only: largest_type
    use mfv_tolerances, only: significant
@@ -359,12 +358,7 @@ contains
       type(largest_type) :: largest
       logical :: available
 
-      associate (known => extremes%searched(candidate_tension(merge(2, 1, upper))))
-         available = extremes%is_of(known, simulation%contact%state)
-         if (available) largest = largest_type(known%value, known%x)
-      end associate
-      if (.not. available) &
-         call find_largest_tension(simulation%contact%model, simulation%contact%state, upper, largest, available)
+      call find_present_tension(simulation, extremes, upper, largest, available)
       if (.not. available) return
       call put(values, name//'_tension', largest%value)
       call put(values, name//'_tension_x', largest%x)

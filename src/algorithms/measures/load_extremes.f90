@@ -65,12 +65,13 @@ module mfv_load_extremes
       real(wp) :: estimate(most_rows, candidate_count) = -1.0_wp
       !> Whether the largest pressure of a finer mesh may be at the end of a surface, without limit.
       logical :: at_end = .false.
-      !> The last row, and the motions of its state.
+      !> The last row, the motions of its state, and the largest tensions in it, where searched for (row 0: not).
       integer :: last_row = 0
       real(wp) :: last_motion(motion_count) = 0.0_wp
+      type(extreme_type) :: last_tension(2)
    contains
       procedure :: add_state
-      procedure :: is_of
+      procedure :: knows_tension
       procedure :: is_repeated
    end type load_extremes_type
 
@@ -136,15 +137,14 @@ contains
       self%rival_x = x
    end subroutine compete
 
-   !> Whether an extreme has been found in this state, the last one.
-   pure logical function is_of(self, extreme, state)
+   !> Whether the largest tension of the body number `side` has been searched for in this state, the last one.
+   pure logical function knows_tension(self, side, state) result(knows)
       class(load_extremes_type), intent(in) :: self
-      type(extreme_type), intent(in) :: extreme
+      integer, intent(in) :: side
       type(contact_state_type), intent(in) :: state
 
-      is_of = extreme%row > 0 .and. extreme%row == self%last_row .and. &
-              .not. any(abs(state%fields%motion - self%last_motion) > 0.0_wp)
-   end function is_of
+      knows = self%last_tension(side)%row > 0 .and. .not. any(abs(state%fields%motion - self%last_motion) > 0.0_wp)
+   end function knows_tension
 
    !> Add the state at the end of a load segment. `slip`: of the stretch so far. `friction`: whether friction acts in the segment.
    !> `place`: where it is among the rows of each stress, 0 if it is not; shape (candidate_count).
@@ -163,6 +163,7 @@ contains
 
       self%last_row = row
       self%last_motion = state%fields%motion
+      self%last_tension = extreme_type()
       call find_patches(model, state, patches)
       edges = outermost_edges(patches)
       self%at_end = self%at_end .or. rises_at_end(model, state, patches)
@@ -476,11 +477,11 @@ contains
       !> The integral over all intervals at a place.
       complex(wp) function over_all(x)
          real(wp), intent(in) :: x
-         complex(wp) :: distant(4)
+         complex(wp) :: distant
          integer :: i, number
 
-         call tree%find_distant(cmplx([x, x], 0.0_wp, wp), distant, near, number)
-         over_all = sum_beyond + distant(1)
+         call tree%find_distant_along(x, distant, near, number)
+         over_all = sum_beyond + distant
          do i = 1, number
             over_all = over_all + over_intervals(x, near(1, i), near(2, i))
          end do
