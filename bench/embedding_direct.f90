@@ -4,7 +4,6 @@ module embedding_direct
    use mfv_case, only: case_type
    use mfv_case_reader, only: read_case_text
    use mfv_error, only: error_type
-   use mfv_kinds, only: wp
    use mfv_motions, only: motion_shift, control_displacement
    use mfv_scene, only: step_type
    use mfv_simulation, only: new_simulation, simulation_type

@@ -9,7 +9,7 @@ module mfv_strings
    implicit none
    private
    public :: string_type, to_text, lower_case, find_nearest_name, from_c, copy_to_c, quoted, shortened, add_text, &
-             list_of_words, word_of, has_word
+             list_of_words, word_of, has_word, line_feed, carriage_return, tab, decimal_digits
 
    !> A text of any length, for arrays of texts.
    type :: string_type
@@ -23,6 +23,7 @@ module mfv_strings
       module procedure real_to_text_digits
    end interface to_text
 
+   character(*), parameter :: line_feed = achar(10), carriage_return = achar(13), tab = achar(9), decimal_digits = '0123456789'
    !> Default number of significant digits.
    integer, parameter :: usual_digits = 6
    !> Length that any number fits.

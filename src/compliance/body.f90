@@ -7,7 +7,9 @@ module mfv_body
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: body_type, new_body, new_matrix_body, gap_between, radial_gap_between
+   public :: body_type, new_body, new_matrix_body, gap_between, radial_gap_between, body_names
+
+   character(*), parameter :: body_names(2) = ['lower', 'upper']
 
    type, extends(geometry_type) :: body_type
       logical :: rigid = .true.

@@ -24,7 +24,7 @@ module mfv_circle
    use mfv_toeplitz, only: toeplitz_type, new_toeplitz
    implicit none
    private
-   public :: circle_type, new_circle, kernel_exact, kernel_fourier, default_harmonics, circle_intervals
+   public :: circle_type, new_circle, kernel_exact, kernel_fourier, circle_intervals
 
    !> Evaluation of the kernels, in the order of the key &body kernel: in closed form, or as a truncated Fourier series.
    integer, parameter :: kernel_exact = 1, kernel_fourier = 2

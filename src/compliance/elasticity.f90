@@ -14,12 +14,12 @@ module mfv_elasticity
    implicit none
    private
    public :: elasticity_type, as_half_plane, as_disk, as_hole, as_matrix
-   public :: elasticity_own, elasticity_half_plane, elasticity_orthotropic, elasticity_anisotropic, elasticity_names, layer_names
+   public :: elasticity_own, elasticity_names, layer_names
 
    !> A half-plane; a disk or a hole of the radius of the surface; a user's matrix.
    integer, parameter :: as_half_plane = 1, as_disk = 2, as_hole = 3, as_matrix = 4
-   !> Choices for a body: that of its shape, or a half-plane, isotropic or not.
-   integer, parameter :: elasticity_own = 1, elasticity_half_plane = 2, elasticity_orthotropic = 3, elasticity_anisotropic = 4
+   !> Choices for a body: that of its shape, the first one, or a half-plane, isotropic or not.
+   integer, parameter :: elasticity_own = 1
    character(*), parameter :: elasticity_names = 'own half_plane orthotropic anisotropic'
    !> Materials of a layer.
    character(*), parameter :: layer_names = 'isotropic orthotropic anisotropic'
@@ -48,6 +48,7 @@ module mfv_elasticity
       procedure :: is_circle
       procedure :: is_matrix
       procedure :: is_layered
+      procedure :: pressure_stretches
       procedure :: has_datum
       procedure :: layers
       procedure :: coat
@@ -84,6 +85,14 @@ contains
 
       is_layered = allocated(self%layer)
    end function is_layered
+
+   !> Whether a pressure can cause tension along a straight surface: by its material, see mfv_material, on layers, or where it
+   !> repeats, as its mean strain is zero there.
+   pure logical function pressure_stretches(self)
+      class(elasticity_type), intent(in) :: self
+
+      pressure_stretches = self%material%pressure_stretches() .or. self%is_layered() .or. self%period > 0.0_wp
+   end function pressure_stretches
 
    !> Whether displacements are measured at a datum: not above a rigid base, nor of a matrix.
    pure logical function has_datum(self)

@@ -10,6 +10,7 @@ module mfv_layer_stress
    use mfv_chebyshev, only: chebyshev_coefficients, chebyshev_points, lagrange_weights, piecewise_type
    use mfv_kinds, only: pi, wp
    use mfv_layers, only: layer_at_depth, layers_type, loads
+   use mfv_smooth_kernel, only: thinnest
    use mfv_wave_integral, only: last_exponent, new_wave_integral
    implicit none
    private
@@ -20,8 +21,6 @@ module mfv_layer_stress
    real(wp), parameter :: mirrored(functions) = [1.0_wp, 1.0_wp, -1.0_wp, -1.0_wp, -1.0_wp, 1.0_wp]
    !> Terms of the series in x and in the depth; intervals of x until it doubles.
    integer, parameter :: terms = 24, terms_down = 20, intervals_per_doubling = 2
-   !> The least thickness, over the distances that are asked for, as in mfv_smooth_kernel, which tells the error.
-   real(wp), parameter :: thinnest = 1.0e-8_wp
 
    !> The functions at one depth. The series are those to the right and, if they differ, to the left, shape (terms, functions or
    !> twice as many, intervals).

@@ -8,7 +8,7 @@
 !> with positive imaginary parts (docs/theory.md). Only their sum and product are needed, which keep all digits where the roots
 !> coincide: mu1 = mu2 = i of an isotropic material.
 module mfv_material
-   use mfv_kinds, only: pi, wp
+   use mfv_kinds, only: wp
    implicit none
    private
    public :: material_type, new_material, new_orthotropic_material, new_anisotropic_material

@@ -18,7 +18,8 @@ module mfv_smooth_kernel
    use mfv_wave_integral, only: last_exponent, new_wave_integral
    implicit none
    private
-   public :: smooth_kernel_type, new_smooth_kernel, smooth_kernels, normal_kernel, tangential_kernel, mixed_kernel, odd_kernel
+   public :: smooth_kernel_type, new_smooth_kernel, smooth_kernels, normal_kernel, tangential_kernel, mixed_kernel, odd_kernel, &
+             thinnest
 
    !> The functions: w by pressure, u by shear, and the even and the odd part of w by shear (of u by pressure: with the sign of the
    !> odd part changed).

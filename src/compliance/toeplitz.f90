@@ -83,10 +83,10 @@ contains
 
       if (do_not_mix(self) .and. .not. any(abs(x) > 0.0_wp)) then
          by_x = 0.0_wp
-         call multiply_one(self, y, by_y)
+         call multiply_one(self, .false., y, by_y)
       else if (do_not_mix(self) .and. .not. any(abs(y) > 0.0_wp)) then
          by_y = 0.0_wp
-         call multiply_one(self, x, by_x)
+         call multiply_one(self, .false., x, by_x)
       else if (self%length <= short) then
          call multiply_in(self, nearby(:self%length, 1), nearby(:self%length, 2), x, by_x, y, by_y)
       else
@@ -102,9 +102,19 @@ contains
       do_not_mix = .not. (allocated(self%mirrored) .or. self%coupled)
    end function do_not_mix
 
-   !> A times x, both of shape (nodes), by a transform of half the length.
-   subroutine multiply_one(self, x, by_x)
+   !> -B y, of shape (nodes), of a matrix with B only (A and C are zero).
+   subroutine multiply_odd(self, y, by_y)
       class(toeplitz_type), intent(in) :: self
+      real(wp), intent(in) :: y(:)
+      real(wp), intent(out) :: by_y(:)
+
+      call multiply_one(self, .true., y, by_y)
+   end subroutine multiply_odd
+
+   !> A times x or, if `odd`, -B times x, both of shape (nodes), by transforms of half the length.
+   subroutine multiply_one(self, odd, x, by_x)
+      class(toeplitz_type), intent(in) :: self
+      logical, intent(in) :: odd
       real(wp), intent(in) :: x(:)
       real(wp), intent(out) :: by_x(:)
       real(wp) :: values(self%length)
@@ -116,29 +126,11 @@ contains
       call real_transform(values, spectrum)
       do k = 1, size(spectrum)
          spectrum(k) = cmplx(self%straight(k)*real(spectrum(k), wp), self%straight(k)*aimag(spectrum(k)), wp)
+         if (odd) spectrum(k) = cmplx(-aimag(spectrum(k)), real(spectrum(k), wp), wp)
       end do
       call back_transform(spectrum, values)
       by_x = values(:self%nodes)
    end subroutine multiply_one
-
-   !> -B y, of shape (nodes), of a matrix with B only (A and C are zero), by transforms of half the length.
-   subroutine multiply_odd(self, y, by_y)
-      class(toeplitz_type), intent(in) :: self
-      real(wp), intent(in) :: y(:)
-      real(wp), intent(out) :: by_y(:)
-      real(wp) :: values(self%length)
-      complex(wp) :: spectrum(self%length/2 + 1)
-      integer :: k
-
-      values(:self%nodes) = y
-      values(self%nodes + 1:) = 0.0_wp
-      call real_transform(values, spectrum)
-      do k = 1, size(spectrum)
-         spectrum(k) = cmplx(-self%straight(k)*aimag(spectrum(k)), self%straight(k)*real(spectrum(k), wp), wp)
-      end do
-      call back_transform(spectrum, values)
-      by_y = values(:self%nodes)
-   end subroutine multiply_odd
 
    !> The same as multiply with the work spaces `values` and `work`, shape (length).
    subroutine multiply_in(self, values, work, x, by_x, y, by_y)

@@ -9,10 +9,10 @@ module mfv_profile
    use mfv_strings, only: to_text
    implicit none
    private
-   public :: trace_type, profile_of_points, level_none, level_mean, level_line, level_parabola
+   public :: trace_type, profile_of_points
 
    !> Levelling of heights, in the order of the key &body level: none, by their mean, or by the least-squares line or parabola.
-   integer, parameter :: level_none = 1, level_mean = 2, level_line = 3, level_parabola = 4
+   integer, parameter :: level_none = 1, level_mean = 2, level_line = 3
 
    !> Settings that turn measured points into a profile.
    type :: trace_type

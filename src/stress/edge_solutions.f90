@@ -49,15 +49,12 @@ contains
       real(wp), intent(inout) :: distance
       logical, intent(out) :: found
       real(wp), parameter :: nearest = -0.6_wp, farthest = 1.6_wp
-      real(wp) :: offset, g(0:most_tabulated), k(0:most_tabulated), h(0:most_tabulated - 1), edge
+      real(wp) :: offset, columns(terms, terms), edge
 
       found = .false.
       if (size(tractions) < first + terms) return
-      call find_edge_solutions(power, offset, g, k, h)
-      associate (last => first + terms - 1)
-         edge = offset + shift_of_edge(factors_of(reshape([k(first:last), g(first:last), h(first:last)], [terms, terms]), &
-                                                  tractions(first:last)), power)
-      end associate
+      call find_columns(power, first, offset, columns)
+      edge = offset + shift_of_edge(factors_of(columns, tractions(first:first + terms - 1)), power)
       found = edge >= nearest .and. edge <= farthest
       if (found) distance = edge
    end subroutine find_solved_distance

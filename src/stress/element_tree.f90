@@ -30,6 +30,7 @@ module mfv_element_tree
       integer :: leaf_count = 0
    contains
       procedure :: find_distant
+      procedure :: find_distant_along
       procedure :: leaves
    end type element_tree_type
 
@@ -254,6 +255,50 @@ contains
       end do
    end subroutine find_distant
 
+   !> The integral over sigma/(s - x) ds over the elements of a straight surface distant from a point x of it; the others are in the
+   !> first `number` ranges of elements `near`, shape (2, leaves).
+   pure subroutine find_distant_along(self, x, integral, near, number)
+      class(element_tree_type), intent(in) :: self
+      real(wp), intent(in) :: x
+      complex(wp), intent(out) :: integral
+      integer, intent(inout) :: near(:, :)
+      integer, intent(out) :: number
+      integer :: waiting(most_levels), group, places, k
+      real(wp) :: away, ratio
+      complex(wp) :: total
+
+      integral = 0.0_wp
+      number = 0
+      places = min(size(self%first), 1)
+      waiting(1) = 1
+      do while (places > 0)
+         group = waiting(places)
+         places = places - 1
+         away = x - real(self%middle(group), wp)
+         if (abs(away) > distant*self%radius(group)) then
+            ratio = self%radius(group)/away
+            total = 0.0_wp
+            do k = highest_moment(abs(ratio)), 0, -1
+               total = total*ratio + self%moments(k, group)
+            end do
+            integral = integral - total/away
+         else if (self%halves(group) == 0) then
+            number = number + 1
+            near(:, number) = [self%first(group), self%last(group)]
+         else
+            waiting(places + 1:places + 2) = self%halves(group) + [1, 0]
+            places = places + 2
+         end if
+      end do
+   end subroutine find_distant_along
+
+   !> The highest moment that matters at a `ratio` of the radius to the distance.
+   pure integer function highest_moment(ratio)
+      real(wp), intent(in) :: ratio
+
+      highest_moment = min(most_moments, ceiling(digits(1.0_wp)*log(2.0_wp)/(-log(ratio))))
+   end function highest_moment
+
    !> Add the integrals of a group, at points `away` from its middle. Polynomials of the ratio by Horner's scheme, whose
    !> intermediate values are the coefficients of the divided difference.
    pure subroutine add_group(moments, shear_moments, radius, away, integrals)
@@ -266,7 +311,7 @@ contains
       ratio = radius/away
       sums = 0.0_wp
       differences = 0.0_wp
-      do k = min(most_moments, ceiling(digits(1.0_wp)*log(2.0_wp)/(-log(maxval(abs(ratio)))))), 0, -1
+      do k = highest_moment(maxval(abs(ratio))), 0, -1
          differences = differences*ratio(2) + sums
          sums = sums*ratio(1) + [moments(k), shear_moments(k)]
       end do

@@ -39,9 +39,12 @@ module mfv_interior_half_plane
       real(wp), allocatable :: from(:), to(:)
       complex(wp), allocatable :: first(:), last(:)
       type(element_tree_type) :: tree
-      !> Of a surface that repeats: the distant images of the elements, and the stress along the surface without which its mean
-      !> strain would not be zero, force/length^2.
+      !> Of a surface that repeats: the distant images of the elements, the near ones to either side, and whether the first element
+      !> begins where the last one of the image before ends; and the stress along the surface without which its mean strain would
+      !> not be zero, force/length^2.
       type(periodic_images_type) :: images
+      integer :: near_images = 0
+      logical :: meets = .false.
       real(wp) :: lateral = 0.0_wp
       !> Middle of the period, from which places are measured here, length.
       real(wp) :: middle = 0.0_wp
@@ -62,7 +65,7 @@ contains
       real(wp), intent(in) :: from(:), to(:)
       complex(wp), intent(in) :: first(:), last(:)
       real(wp), intent(in), optional :: period, middle
-      integer :: m, n
+      integer :: n
 
       self%material = material
       self%root = material%roots()
@@ -72,19 +75,12 @@ contains
       self%last = last
       if (present(period)) then
          if (present(middle)) self%middle = middle
-         associate (images => [(m, m=-images_each_side, images_each_side)])
-            self%from = [(from - self%middle + m*period, m=-images_each_side, images_each_side)]
-            self%to = [(to - self%middle + m*period, m=-images_each_side, images_each_side)]
-            n = size(from)
-            if (n > 0) then
-               ! The same numbers where images meet: the logarithms there cancel.
-               if (abs(to(n) - from(1) - period) < significant*period) &
-                  self%to(n::n) = from(1) - self%middle + [(m*period, m=1 - images_each_side, images_each_side + 1)]
-            end if
-            self%first = [(first, m=1, size(images))]
-            self%last = [(last, m=1, size(images))]
-         end associate
-         self%images = new_periodic_images(period, from - self%middle, to - self%middle, first, last)
+         self%from = from - self%middle
+         self%to = to - self%middle
+         self%near_images = images_each_side
+         n = size(from)
+         if (n > 0) self%meets = abs(to(n) - from(1) - period) < significant*period
+         self%images = new_periodic_images(period, self%from, self%to, first, last)
          self%lateral = material%lateral_ratio()*sum(0.5_wp*real(first + last, wp)*(to - from))/period
       end if
       self%tree = new_straight_tree(self%from, self%to, self%first, self%last)
@@ -144,22 +140,39 @@ contains
    pure function near_sums(self, points) result(sums)
       class(half_plane_load_type), intent(in) :: self
       complex(wp), intent(in) :: points(2)
-      complex(wp) :: sums(4), mean, tilt, integral(2), difference(2)
-      integer :: near(2, self%tree%leaves()), number, j, k
+      complex(wp) :: sums(4), distant(4), mean, tilt, integral(2), difference(2)
+      real(wp) :: ends(2)
+      integer :: near(2, self%tree%leaves()), number, j, k, m
 
-      call self%tree%find_distant(points, sums, near, number)
-      do k = 1, number
-         do j = near(1, k), near(2, k)
-            mean = 0.5_wp*(self%first(j) + self%last(j))
-            tilt = 0.5_wp*(self%last(j) - self%first(j))
-            call element_integrals(self%from(j) - points, self%to(j) - points, integral, difference)
-            sums(1) = sums(1) + mean*integral(1) + tilt*integral(2)
-            sums(2) = sums(2) + mean*difference(1) + tilt*difference(2)
-            sums(3) = sums(3) + aimag(mean)*integral(1) + aimag(tilt)*integral(2)
-            sums(4) = sums(4) + aimag(mean)*difference(1) + aimag(tilt)*difference(2)
+      sums = 0.0_wp
+      do m = -self%near_images, self%near_images
+         call self%tree%find_distant(points - m*self%images%period, distant, near, number)
+         sums = sums + distant
+         do k = 1, number
+            do j = near(1, k), near(2, k)
+               mean = 0.5_wp*(self%first(j) + self%last(j))
+               tilt = 0.5_wp*(self%last(j) - self%first(j))
+               ends = ends_of(self, j, m)
+               call element_integrals(ends(1) - points, ends(2) - points, integral, difference)
+               sums(1) = sums(1) + mean*integral(1) + tilt*integral(2)
+               sums(2) = sums(2) + mean*difference(1) + tilt*difference(2)
+               sums(3) = sums(3) + aimag(mean)*integral(1) + aimag(tilt)*integral(2)
+               sums(4) = sums(4) + aimag(mean)*difference(1) + aimag(tilt)*difference(2)
+            end do
          end do
       end do
    end function near_sums
+
+   !> The ends of element `j` of the image number `image`, lengths: the same numbers where images meet, so that the logarithms there
+   !> cancel.
+   pure function ends_of(self, j, image) result(ends)
+      class(half_plane_load_type), intent(in) :: self
+      integer, intent(in) :: j, image
+      real(wp) :: ends(2)
+
+      ends = [self%from(j), self%to(j)] + image*self%images%period
+      if (self%meets .and. j == size(self%to)) ends(2) = self%from(1) + (image + 1)*self%images%period
+   end function ends_of
 
    !> Stresses as of `stress` at the depth `depth` > 0, length, under line loads `normal` into the surface and `shear` to the right,
    !> force/length, at the distances `right` to the right, lengths; shapes (loads). Isotropic: Flamant (Johnson 1985, section 2.3).
@@ -204,20 +217,24 @@ contains
    pure real(wp) function surface_stress(self, x)
       class(half_plane_load_type), intent(in) :: self
       real(wp), intent(in) :: x
-      real(wp) :: here(2), sums(2), place
-      complex(wp) :: distant(4), surface(2)
-      integer :: near(2, self%tree%leaves()), number, j, k
+      real(wp) :: here(2), sums(2), place, ends(2)
+      complex(wp) :: images(4), distant
+      integer :: near(2, self%tree%leaves()), number, j, k, m
 
       place = place_of(self, x)
-      surface = place
-      call self%tree%find_distant(surface, distant, near, number)
-      if (self%images%period > 0.0_wp) call self%images%add_distant(surface, distant)
+      images = 0.0_wp
+      if (self%images%period > 0.0_wp) call self%images%add_distant(cmplx([place, place], 0.0_wp, wp), images)
       here = 0.0_wp
       ! Along the surface integrals of p and of tau are real.
-      sums = [real(distant(1), wp), real(distant(3), wp)]
-      do k = 1, number
-         do j = near(1, k), near(2, k)
-            call add_surface_element(self%from(j) - place, self%to(j) - place, self%first(j), self%last(j), sums, here)
+      sums = [real(images(1), wp), real(images(3), wp)]
+      do m = -self%near_images, self%near_images
+         call self%tree%find_distant_along(place - m*self%images%period, distant, near, number)
+         sums = sums + [real(distant, wp), aimag(distant)]
+         do k = 1, number
+            do j = near(1, k), near(2, k)
+               ends = ends_of(self, j, m) - place
+               call add_surface_element(ends(1), ends(2), self%first(j), self%last(j), sums, here)
+            end do
          end do
       end do
       surface_stress = surface_stress_of(self%material, here(1), here(2), sums(1)/pi, sums(2)/pi) + self%lateral
@@ -238,15 +255,19 @@ contains
    pure complex(wp) function traction(self, x)
       class(half_plane_load_type), intent(in) :: self
       real(wp), intent(in) :: x
-      real(wp) :: place
-      integer :: j
+      real(wp) :: place, ends(2)
+      integer :: j, m
 
       traction = 0.0_wp
       place = place_of(self, x)
-      j = last_not_above(self%from, place)
-      if (j == 0) return
-      if (place > self%to(j) .or. .not. self%to(j) > self%from(j)) return
-      traction = self%first(j) + (self%last(j) - self%first(j))*((place - self%from(j))/(self%to(j) - self%from(j)))
+      ! (The nearest images: elements may extend beyond the period.)
+      do m = -min(self%near_images, 1), min(self%near_images, 1)
+         j = last_not_above(self%from, place - m*self%images%period)
+         if (j == 0) cycle
+         ends = ends_of(self, j, m)
+         if (place > ends(2) .or. .not. ends(2) > ends(1)) cycle
+         traction = self%first(j) + (self%last(j) - self%first(j))*((place - ends(1))/(ends(2) - ends(1)))
+      end do
    end function traction
 
    !> The surface point `x` as the elements are kept: with a period, in the one around their middle; lengths.

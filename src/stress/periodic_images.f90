@@ -45,7 +45,7 @@ contains
       real(wp), parameter :: short = 0.005_wp
       integer, parameter :: fewer_points = 4
       real(wp) :: point(points, 2), weight(points, 2), place
-      complex(wp) :: moment(0:2*terms - 1, 2), part(2), turn, power(2)
+      complex(wp) :: moment(0:2*terms - 1), part, turn, power(2)
       real(wp) :: binomial(0:2*terms - 1), a
       integer :: i, j, k, element, rule
 
@@ -57,17 +57,15 @@ contains
          rule = merge(2, 1, to(element) - from(element) <= short*period)
          do i = 1, merge(fewer_points, points, rule == 2)
             place = (from(element) + point(i, rule)*(to(element) - from(element)))/period
-            part(1) = (first(element) + point(i, rule)*(last(element) - first(element)))*weight(i, rule) &
-                      *(to(element) - from(element))
-            part(2) = aimag(part(1))
+            part = (first(element) + point(i, rule)*(last(element) - first(element)))*weight(i, rule)*(to(element) - from(element))
             turn = exp(cmplx(0.0_wp, 2.0_wp*pi*place, wp))
-            power = part
+            power = [part, cmplx(aimag(part), 0.0_wp, wp)]
             do k = 0, most_modes
                self%mode(k, :) = self%mode(k, :) + power
                power = power*turn
             end do
             do k = 0, 2*terms - 1
-               moment(k, :) = moment(k, :) + part
+               moment(k) = moment(k) + part
                part = part*place
             end do
          end do
@@ -79,9 +77,10 @@ contains
          if (modulo(k, 2) == 0) cycle
          a = sum_of_powers(k + 1)
          do j = 0, k
-            self%polynomial(j, :) = self%polynomial(j, :) - 2.0_wp/period*a*(-1)**j*binomial(j)*moment(k - j, :)
+            self%polynomial(j, 1) = self%polynomial(j, 1) - 2.0_wp/period*a*(-1)**j*binomial(j)*moment(k - j)
          end do
       end do
+      self%polynomial(:, 2) = aimag(self%polynomial(:, 1))
    end function new_periodic_images
 
    !> Sum of m^-s over m > images_each_side, s >= 2: the first terms, and the others by the formula of Euler and Maclaurin.

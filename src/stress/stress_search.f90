@@ -8,7 +8,11 @@ module mfv_stress_search
    use mfv_tolerances, only: certified, visible
    implicit none
    private
-   public :: largest_type, largest_von_mises, largest_tension, find_largest_at_interfaces, estimate_in_layers
+   public :: largest_type, largest_von_mises, largest_tension, find_largest_at_interfaces, estimate_in_layers, &
+             depths_below
+
+   !> Depths over the half-width, up to that of the largest stress under an ellipse of pressure.
+   real(wp), parameter :: depths_below(6) = [0.1_wp, 0.2_wp, 0.3_wp, 0.4_wp, 0.55_wp, 0.7_wp]
 
    !> What is searched for along a line.
    integer, parameter :: surface_tension = 1, surface_von_mises = 2, interface_tension = 3, interface_shear = 4
@@ -161,16 +165,15 @@ contains
    type(largest_type) function largest_tension(interior) result(largest)
       type(interior_type), intent(in) :: interior
       real(wp) :: place, point(2), value, rival, rival_place
-      logical :: stretches
 
       largest%x = ieee_value(1.0_wp, ieee_quiet_nan)
       largest%y = largest%x
       largest%value = max(interior%bulk_of(1), 0.0_wp)
       if (.not. interior%half_width() > 0.0_wp) return
-      stretches = interior%body%elasticity%material%pressure_stretches()
-      if (.not. (interior%body%deforms_as_circle() .or. interior%is_sheared() .or. stretches .or. &
-                 interior%body%elasticity%is_layered() .or. interior%body%elasticity%period > 0.0_wp)) return
-      if (interior%elements%singular .or. (interior%elements%sharp .and. stretches)) then
+      if (.not. (interior%body%deforms_as_circle() .or. interior%is_sheared() .or. &
+                 interior%body%elasticity%pressure_stretches())) return
+      if (interior%elements%singular .or. &
+          (interior%elements%sharp .and. interior%body%elasticity%material%pressure_stretches())) then
          largest%value = ieee_value(1.0_wp, ieee_quiet_nan)
          return
       end if
@@ -216,8 +219,6 @@ contains
       type(interior_type), intent(in) :: interior
       real(wp), intent(out) :: tension, von_mises
       integer, parameter :: across = 24
-      !> Depths over the half-width, up to that of the largest stress under an ellipse of pressure.
-      real(wp), parameter :: depths(6) = [0.1_wp, 0.2_wp, 0.3_wp, 0.4_wp, 0.55_wp, 0.7_wp]
       real(wp), allocatable :: places(:), below(:)
       integer :: i, j
 
@@ -231,7 +232,7 @@ contains
       if (.not. interior%body%has_strength()) return
       places = interior%zone_edges(most_between=across)
       associate (elasticity => interior%body%elasticity)
-         below = [0.0_wp, interior%half_width()*depths, (elasticity%depth_of(i), i=1, size(elasticity%layer))]
+         below = [0.0_wp, interior%half_width()*depths_below, (elasticity%depth_of(i), i=1, size(elasticity%layer))]
       end associate
       do j = 1, size(below)
          von_mises = max(von_mises, maxval([(von_mises_at(interior, places(i), below(j)), i=1, size(places))]))

@@ -18,13 +18,13 @@ module mfv_discretisation_error
    use mfv_node_status, only: holds, in_contact
    use mfv_observables
    use mfv_observer, only: observer_type, relay_type
+   use mfv_extreme_states, only: find_present_tension
    use mfv_profile_sampling, only: largest_jumps, negligible_pressure
    use mfv_resolution, only: add_unresolved, all_quantities, find_unresolved, is_unresolved, undersampling, unresolved_type
    use mfv_scene, only: scene_type
    use mfv_simulation, only: history_none, mark_loading, mark_return, mark_reversal, new_simulation, simulation_type, &
                              states_steps
    use mfv_slip_zones, only: contact_interval, is_narrow_stick_zone, largest_resolved_error, slip_record_type
-   use mfv_state_interior, only: find_largest_tension
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_stress_search, only: largest_type
    use mfv_strings, only: to_text
@@ -123,7 +123,7 @@ contains
       if (.not. simulation%contact%model%tangential) return
       do side = 1, size(body)
          call add('largest_'//body(side)//'_tension', rivals_of(extremes%searched(candidate_tension(side))))
-         call find_largest_tension(simulation%contact%model, simulation%contact%state, side == 2, largest, available)
+         call find_present_tension(simulation, extremes, side == 2, largest, available)
          if (available) call add(body(side)//'_tension', largest)
       end do
 

@@ -3,17 +3,17 @@
 !> and eq. 6.5.
 module mfv_observables
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+   use mfv_body, only: body_names
    use mfv_contact_state, only: contact_state_type
    use mfv_cycle, only: cycle_type
    use mfv_edge_fields, only: edge_field_type, edge_quantities
-   use mfv_extreme_states, only: find_extremes
+   use mfv_extreme_states, only: find_extremes, find_present_tension
    use mfv_kinds, only: pi, wp
    use mfv_load_cycles, only: present_edge_fields
    use mfv_load_extremes, only: candidate_tension, candidate_von_mises, extreme_type, load_extremes_type
    use mfv_motions, only: motions, motion_count => user_motions, motion_approach, motion_shift
    use mfv_near_field, only: near_field_type
    use mfv_simulation, only: mark_loading, simulation_type
-   use mfv_state_interior, only: find_largest_tension
    use mfv_steady_stick, only: steady_stick_length
    use mfv_stress_search, only: largest_type
    use mfv_tolerances, only: significant
@@ -358,12 +358,7 @@ contains
       type(largest_type) :: largest
       logical :: available
 
-      associate (known => extremes%searched(candidate_tension(merge(2, 1, upper))))
-         available = extremes%is_of(known, simulation%contact%state)
-         if (available) largest = largest_type(known%value, known%x)
-      end associate
-      if (.not. available) &
-         call find_largest_tension(simulation%contact%model, simulation%contact%state, upper, largest, available)
+      call find_present_tension(simulation, extremes, upper, largest, available)
       if (.not. available) return
       call put(values, name//'_tension', largest%value)
       call put(values, name//'_tension_x', largest%x)
@@ -373,7 +368,6 @@ contains
    subroutine add_extremes(extremes, values)
       type(load_extremes_type), intent(in) :: extremes
       real(wp), intent(inout) :: values(:)
-      character(*), parameter :: body(2) = ['lower', 'upper']
       integer :: i
 
       call put_extreme('largest_pressure', extremes%pressure)
@@ -381,11 +375,11 @@ contains
       call put_extreme('largest_slip_range', extremes%slip_range)
       call put_extreme('smallest_stick_ratio', extremes%lowest_stick)
       call put_extreme('largest_stick_ratio', extremes%highest_stick)
-      do i = 1, size(body)
-         call put_extreme('largest_'//body(i)//'_tension', extremes%searched(candidate_tension(i)))
-         call put_extreme('largest_'//body(i)//'_von_mises', extremes%searched(candidate_von_mises(i)))
-         call put_extreme('largest_'//body(i)//'_interface_tension', extremes%interface_tension(i))
-         call put_extreme('largest_'//body(i)//'_interface_shear', extremes%interface_shear(i))
+      do i = 1, size(body_names)
+         call put_extreme('largest_'//body_names(i)//'_tension', extremes%searched(candidate_tension(i)))
+         call put_extreme('largest_'//body_names(i)//'_von_mises', extremes%searched(candidate_von_mises(i)))
+         call put_extreme('largest_'//body_names(i)//'_interface_tension', extremes%interface_tension(i))
+         call put_extreme('largest_'//body_names(i)//'_interface_shear', extremes%interface_shear(i))
       end do
 
    contains

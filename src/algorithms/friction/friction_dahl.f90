@@ -21,8 +21,6 @@ module mfv_friction_dahl
 
    !> Dahl's traction reaches its limit only after infinite slip; beyond this fraction it counts as at the limit.
    real(wp), parameter :: full_fraction = 1.0_wp - 1.0e-6_wp
-   !> Factor on the tolerance for rates of secants.
-   real(wp), parameter :: secant_tolerance = 100.0_wp
 
    type, extends(friction_law_type) :: dahl_law_type
       !> Stiffness sigma > 0 of the bristles, force/length^3 (traction over slip), and exponent gamma >= 0.

@@ -15,10 +15,13 @@ module mfv_friction_law
    use mfv_node_status
    implicit none
    private
-   public :: friction_law_type, friction_point_type, friction_row_type, friction_event_type, memory_size, most_events
+   public :: friction_law_type, friction_point_type, friction_row_type, friction_event_type, memory_size, most_events, &
+             secant_tolerance
 
    !> Memory values of each node; and most events of a law at a node.
    integer, parameter :: memory_size = 3, most_events = 3
+   !> Factor on the tolerance for rates of secants.
+   real(wp), parameter :: secant_tolerance = 100.0_wp
 
    !> State of a node for a friction law.
    type :: friction_point_type

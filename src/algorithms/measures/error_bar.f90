@@ -6,7 +6,7 @@ module mfv_error_bar
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: error_bar_type, error_estimate_type, new_error_bar, unresolved_bar, logarithmic_bar, lowest_order, highest_order
+   public :: error_bar_type, error_estimate_type, new_error_bar, unresolved_bar, logarithmic_bar, highest_order
 
    !> A quantity with its error bar.
    type :: error_bar_type

@@ -7,7 +7,7 @@
 module mfv_inequalities
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_model, only: contact_model_type
-   use mfv_friction_law, only: friction_event_type, most_events
+   use mfv_friction_law, only: friction_event_type, most_events, secant_tolerance
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_approach, motion_shift
    use mfv_node_status
@@ -111,7 +111,6 @@ contains
       type(violations_type), intent(inout) :: violations
       real(wp) :: traction_scale, motion_scale, limit_fraction, full, slip_rate, least_rate, uncertain(size(status))
       logical :: soft_limit, sticks
-      real(wp), parameter :: secant_tolerance = 100.0_wp
       integer :: i, n
 
       n = size(status)

@@ -18,7 +18,7 @@ module mfv_load_extremes
    use mfv_motions, only: bulk_motions, motion_approach, motion_shift, motion_count
    use mfv_node_status, only: in_contact
    use mfv_state_interior, only: state_interior
-   use mfv_stress_search, only: estimate_in_layers, find_largest_at_interfaces, largest_type
+   use mfv_stress_search, only: depths_below, estimate_in_layers, find_largest_at_interfaces, largest_type
    use mfv_tolerances, only: significant, visible
    use mfv_zone_edges, only: find_patches, largest_shear, outermost_edges, patch_type, rises_at_end, zone_edges_type
    implicit none
@@ -65,12 +65,13 @@ module mfv_load_extremes
       real(wp) :: estimate(most_rows, candidate_count) = -1.0_wp
       !> Whether the largest pressure of a finer mesh may be at the end of a surface, without limit.
       logical :: at_end = .false.
-      !> The last row, and the motions of its state.
+      !> The last row, the motions of its state, and the largest tensions in it, where searched for (row 0: not).
       integer :: last_row = 0
       real(wp) :: last_motion(motion_count) = 0.0_wp
+      type(extreme_type) :: last_tension(2)
    contains
       procedure :: add_state
-      procedure :: is_of
+      procedure :: knows_tension
       procedure :: is_repeated
    end type load_extremes_type
 
@@ -136,15 +137,14 @@ contains
       self%rival_x = x
    end subroutine compete
 
-   !> Whether an extreme has been found in this state, the last one.
-   pure logical function is_of(self, extreme, state)
+   !> Whether the largest tension of the body number `side` has been searched for in this state, the last one.
+   pure logical function knows_tension(self, side, state) result(knows)
       class(load_extremes_type), intent(in) :: self
-      type(extreme_type), intent(in) :: extreme
+      integer, intent(in) :: side
       type(contact_state_type), intent(in) :: state
 
-      is_of = extreme%row > 0 .and. extreme%row == self%last_row .and. &
-              .not. any(abs(state%fields%motion - self%last_motion) > 0.0_wp)
-   end function is_of
+      knows = self%last_tension(side)%row > 0 .and. .not. any(abs(state%fields%motion - self%last_motion) > 0.0_wp)
+   end function knows_tension
 
    !> Add the state at the end of a load segment. `slip`: of the stretch so far. `friction`: whether friction acts in the segment.
    !> `place`: where it is among the rows of each stress, 0 if it is not; shape (candidate_count).
@@ -163,6 +163,7 @@ contains
 
       self%last_row = row
       self%last_motion = state%fields%motion
+      self%last_tension = extreme_type()
       call find_patches(model, state, patches)
       edges = outermost_edges(patches)
       self%at_end = self%at_end .or. rises_at_end(model, state, patches)
@@ -476,11 +477,11 @@ contains
       !> The integral over all intervals at a place.
       complex(wp) function over_all(x)
          real(wp), intent(in) :: x
-         complex(wp) :: distant(4)
+         complex(wp) :: distant
          integer :: i, number
 
-         call tree%find_distant(cmplx([x, x], 0.0_wp, wp), distant, near, number)
-         over_all = sum_beyond + distant(1)
+         call tree%find_distant_along(x, distant, near, number)
+         over_all = sum_beyond + distant
          do i = 1, number
             over_all = over_all + over_intervals(x, near(1, i), near(2, i))
          end do
@@ -530,8 +531,6 @@ contains
       integer, intent(in) :: side
       real(wp), intent(in) :: stress(:), bulk
       integer, parameter :: across = 12
-      !> Depths over the half-width, up to that of the largest stress under an ellipse of pressure.
-      real(wp), parameter :: depths(6) = [0.1_wp, 0.2_wp, 0.3_wp, 0.4_wp, 0.55_wp, 0.7_wp]
       integer, parameter :: most_patches = 20
       real(wp) :: sign, depth, below(3), peak(size(patches))
       logical :: left(size(patches))
@@ -547,8 +546,8 @@ contains
       do number = 1, min(size(patches), most_patches)
          i = maxloc(peak, dim=1, mask=left)
          left(i) = .false.
-         do k = 1, size(depths)
-            depth = 0.5_wp*depths(k)*patches(i)%length()
+         do k = 1, size(depths_below)
+            depth = 0.5_wp*depths_below(k)*patches(i)%length()
             do j = 1, across
                associate (place => patches(i)%left + patches(i)%length()*(j - 0.5_wp)/across)
                   below = 0.0_wp

@@ -55,9 +55,8 @@ contains
       logical :: stretches
 
       ! Pressure only compresses most straight surfaces.
-      stretches = model%scene%lower%elasticity%material%pressure_stretches()
-      if (upper) stretches = model%scene%upper%elasticity%material%pressure_stretches()
-      stretches = stretches .or. model%scene%mesh%period > 0.0_wp .or. model%scene%has_layers(upper)
+      stretches = model%scene%lower%elasticity%pressure_stretches()
+      if (upper) stretches = model%scene%upper%elasticity%pressure_stretches()
       available = model%scene%can_have_bulk_stress(upper) .and. .not. stretches .and. &
                   .not. maxval(abs(state%fields%shear)) > certified*maxval(state%fields%pressure)
       if (available) then

@@ -281,8 +281,11 @@ contains
       held = holds(state%status) .or. (slips(state%status) .and. slipped <= certified*scale)
       zones = zones_of(slips(state%status))
       patches = zones_of(in_contact(state%status))
+      patch = 1
       do i = 1, size(zones)
-         patch = findloc(patches%last >= zones(i)%last, .true., dim=1)
+         do while (patches(patch)%last < zones(i)%last)
+            patch = patch + 1
+         end do
          associate (first => zones(i)%first, last => zones(i)%last, from => patches(patch)%first, to => patches(patch)%last)
             held(first:last) = held(first:last) .or. &
                                rests(slipped(first:last), maxval(slipped(from:to), mask=slips(state%status(from:to))))
@@ -836,7 +839,7 @@ contains
       entries(1, :) = entries(1, :)/model%width(middle - about:middle + about)
       steps = [2.0_wp*entries(1, 0) - entries(1, -1) - entries(1, 1), &
                entries(1, -1) + entries(1, 1) - entries(1, -2) - entries(1, 2)]
-      has_known_error = (model%scene%has_layers(.false.) .or. model%scene%has_layers(.true.) .or. &
+      has_known_error = (model%scene%is_layered() .or. &
                          abs(steps(1) - ratio*steps(2)) <= merge(near, alike, model%scene%lower%is_matrix())*abs(steps(1))) .and. &
                         maxval(abs(model%width(middle - about:middle + about) - model%width(node))) <= near*model%width(node)
    end function has_known_error

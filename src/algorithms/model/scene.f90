@@ -386,11 +386,7 @@ contains
       class(scene_type), intent(in) :: self
       logical, intent(in) :: upper
 
-      if (upper) then
-         has_layers = self%upper%elasticity%is_layered()
-      else
-         has_layers = self%lower%elasticity%is_layered()
-      end if
+      has_layers = merge(self%upper%elasticity%is_layered(), self%lower%elasticity%is_layered(), upper)
    end function has_layers
 
    !> Relative curvature K = 1/R1 + 1/R2 of dissertation eq. 6.1, 1/length.
@@ -551,13 +547,15 @@ contains
       class(scene_type), intent(in) :: self
       logical, intent(in) :: upper
 
-      if (upper) then
-         can_have_bulk_stress = has_interior(self%upper) .and. self%upper%elasticity%strain_by_bulk_stress() > 0.0_wp .and. &
-                                .not. self%upper%deforms_as_circle()
-      else
-         can_have_bulk_stress = has_interior(self%lower) .and. self%lower%elasticity%strain_by_bulk_stress() > 0.0_wp .and. &
-                                .not. self%lower%deforms_as_circle()
-      end if
+      can_have_bulk_stress = merge(of_body(self%upper), of_body(self%lower), upper)
+
+   contains
+
+      pure logical function of_body(body)
+         type(body_type), intent(in) :: body
+
+         of_body = has_interior(body) .and. body%elasticity%strain_by_bulk_stress() > 0.0_wp .and. .not. body%deforms_as_circle()
+      end function of_body
    end function can_have_bulk_stress
 
    !> Whether an interference can close all gaps: with vertical normals, or between a disk and a hole of one radius.

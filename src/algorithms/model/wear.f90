@@ -3,11 +3,11 @@ module mfv_wear
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: wear_type, wear_archard, wear_work
+   public :: wear_type, wear_archard
 
-   !> Depth of wear in proportion to pressure times slip (Archard 1953), or to the work of friction per unit of surface; in the
-   !> order of the key &wear law.
-   integer, parameter :: wear_archard = 1, wear_work = 2
+   !> Depth of wear in proportion to pressure times slip (Archard 1953), or to the work of friction per unit of surface; the
+   !> number of the first in the order of the key &wear law.
+   integer, parameter :: wear_archard = 1
 
    type :: wear_type
       integer :: law = wear_archard

@@ -11,7 +11,7 @@ module mfv_extreme_states
    use mfv_stress_search, only: largest_type
    implicit none
    private
-   public :: note_extremes, complete_extremes, find_extremes, find_largest_of_history
+   public :: note_extremes, complete_extremes, find_extremes, find_present_tension, find_largest_of_history
 
    !> An estimate is not smaller than this part of a stress that is among the largest.
    real(wp), parameter :: least_estimate = 0.85_wp
@@ -59,8 +59,11 @@ contains
          candidate = candidate_tension(i)
          if (self%current%cycle%number > 1) then
             associate (before => self%cycles(self%cycle_count)%extremes)
-               self%current%cycle%extremes%searched(candidate) = before%searched(candidate)
-               if (self%extremes%is_repeated(before, candidate)) cycle
+               if (self%extremes%is_repeated(before, candidate)) then
+                  self%current%cycle%extremes%searched(candidate) = before%searched(candidate)
+                  self%current%cycle%extremes%last_tension(i) = before%last_tension(i)
+                  cycle
+               end if
             end associate
          end if
          call search(self, mark_of(mark_candidate, candidate, 1), candidate, self%current%cycle%extremes)
@@ -99,6 +102,9 @@ contains
                call found%raise_with_rival(largest%value, extremes%row(i, candidate), interval, largest%x, largest%y)
                call found%compete(largest%rival, largest%rival_x, interval)
             end associate
+            if (any(candidate == candidate_tension) .and. extremes%row(i, candidate) == extremes%last_row) &
+               extremes%last_tension(candidate) = extreme_type(largest%value, largest%x, largest%y, extremes%last_row, &
+                                                               largest%rival, largest%rival_x)
          end do
       end associate
 
@@ -134,6 +140,27 @@ contains
          call search(self, first_of_von_mises(self, i), candidate_von_mises(i), extremes)
       end do
    end subroutine find_extremes
+
+   !> The largest tension of the lower or `upper` body in the present state: of find_extremes, if it was searched for there.
+   !> `available`: see find_largest_tension.
+   subroutine find_present_tension(self, extremes, upper, largest, available)
+      class(run_state_type), intent(in) :: self
+      type(load_extremes_type), intent(in) :: extremes
+      logical, intent(in) :: upper
+      type(largest_type), intent(out) :: largest
+      logical, intent(out) :: available
+      integer :: side
+
+      side = merge(2, 1, upper)
+      available = extremes%knows_tension(side, self%contact%state)
+      if (available) then
+         associate (known => extremes%last_tension(side))
+            largest = largest_type(known%value, known%x, known%y, known%rival, known%rival_x)
+         end associate
+      else
+         call find_largest_tension(self%contact%model, self%contact%state, upper, largest, available)
+      end if
+   end subroutine find_present_tension
 
    !> The first mark of the states in which find_extremes searches for the largest von Mises stress of a body.
    pure integer function first_of_von_mises(self, body) result(mark)
@@ -194,11 +221,7 @@ contains
          type(largest_type), intent(in) :: stress
 
          associate (scene => self%contact%model%scene)
-            if (upper) then
-               strength_at = scene%upper%strength_at(stress%y)
-            else
-               strength_at = scene%lower%strength_at(stress%y)
-            end if
+            strength_at = merge(scene%upper%strength_at(stress%y), scene%lower%strength_at(stress%y), upper)
          end associate
       end function strength_at
    end subroutine find_largest_of_history

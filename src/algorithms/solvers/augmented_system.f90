@@ -18,7 +18,7 @@ module mfv_augmented_system
    use mfv_contact_system
    use mfv_kinds, only: wp
    use mfv_lapack, only: dgesv, dgetrs
-   use mfv_motions, only: motion_count, motion_approach, motion_shift, motion_rotation, control_force
+   use mfv_motions, only: motion_count, motion_shift, motion_rotation, control_force
    use mfv_node_status
    implicit none
    private

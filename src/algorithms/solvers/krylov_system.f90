@@ -46,9 +46,9 @@ module mfv_krylov_system
 
    !> Rates as a first guess of later ones.
    type :: rates_type
-      !> Tractions, shape (nodes), and motions, in the units of the system.
+      !> Tractions, shape (nodes), and motions, in the units of the system; the rates of the loads.
       real(wp), allocatable :: pressure(:), shear(:)
-      real(wp) :: motion(motion_count) = 0.0_wp
+      real(wp), dimension(motion_count) :: motion = 0.0_wp, load = 0.0_wp
    end type rates_type
 
    type, extends(contact_system_type) :: krylov_system_type
@@ -69,8 +69,9 @@ module mfv_krylov_system
       type(front_type), allocatable :: front(:)
       !> Whether pressures act on the rows of held nodes.
       logical :: coupled = .false.
-      !> Preconditioned columns of the free motions, shape (contact + held, free), and the Schur complement, shape (free, free).
-      real(wp), allocatable :: columns(:, :), schur(:, :)
+      !> Rows of the resultants and preconditioned columns of the free motions, shape (contact + held, free), and the Schur
+      !> complement, shape (free, free).
+      real(wp), allocatable :: resultants(:, :), columns(:, :), schur(:, :)
       !> Tractions and displacements of the last product, shape (nodes); and those of the last residual: pressure, shear, normal,
       !> tangential, shape (nodes, 4).
       real(wp), allocatable :: pressure(:), shear(:), normal(:), tangential(:), found(:, :)
@@ -161,7 +162,8 @@ contains
       call find_prescribed(constraints, model, .true., prescribed)
       right = right_side(self, model, constraints%status, prescribed)
       associate (last => self%last(constraints%kind))
-         unknowns = [last%pressure(self%contact), last%shear(self%held), last%motion(self%free)]
+         unknowns = proportion(last%load, constraints%load%rate) &
+                    *[last%pressure(self%contact), last%shear(self%held), last%motion(self%free)]
       end associate
       call iterate(self, model, right, max(model%scene%method%linear_tolerance, constraints%allowed, &
                                            merge(0.0_wp, constraints%allowed_in_rates, constraints%kind == rates_of_loads)), &
@@ -172,8 +174,20 @@ contains
          last%pressure = self%found(:, 1)
          last%shear = self%found(:, 2)
          last%motion = motion_of(self, right%motion, unknowns)
+         last%load = constraints%load%rate
       end associate
    end subroutine solve_by_iteration
+
+   !> The ratio of the rates of all loads `now` to those `before`; 1 where they are not in proportion.
+   pure real(wp) function proportion(before, now) result(ratio)
+      real(wp), intent(in) :: before(:), now(:)
+      integer :: first
+
+      ratio = 1.0_wp
+      first = findloc(abs(before) > 0.0_wp, .true., dim=1)
+      if (first == 0) return
+      if (all(abs(now - now(first)/before(first)*before) <= significant*abs(now))) ratio = now(first)/before(first)
+   end function proportion
 
    !> Set units, arms and work space for the present mesh; move the last rates to a mesh that has grown.
    subroutine fit_to_mesh(self, model)
@@ -275,17 +289,19 @@ contains
       call self%preconditioner%set_contact(self%contact)
       call self%preconditioner%set_held(self%held, self%softness)
       m = size(self%contact)
-      if (allocated(self%columns)) deallocate (self%columns, self%schur)
-      allocate (self%columns(m + size(self%held), size(self%free)), self%schur(size(self%free), size(self%free)))
+      if (allocated(self%columns)) deallocate (self%resultants, self%columns, self%schur)
+      allocate (self%resultants(m + size(self%held), size(self%free)))
+      allocate (self%columns, mold=self%resultants)
       do j = 1, size(self%free)
-         self%columns(:m, j) = -self%normal_arm(self%contact, self%free(j))
-         self%columns(m + 1:, j) = -self%tangential_arm(self%held, self%free(j))
+         associate (normal => self%normal_arm(self%contact, self%free(j)), tangential => self%tangential_arm(:, self%free(j)))
+            self%columns(:m, j) = -normal
+            self%columns(m + 1:, j) = -tangential(self%held)
+            self%resultants(:m, j) = self%width(self%contact)*(normal + self%slope(self%contact)*tangential(self%contact))
+            self%resultants(m + 1:, j) = self%width(self%held)*tangential(self%held)
+         end associate
          call precondition_tractions(self, model, self%columns(:, j))
-         call spread_tractions(self, self%columns(:, j))
-         do i = 1, size(self%free)
-            self%schur(i, j) = resultant(self, self%free(i))
-         end do
       end do
+      self%schur = matmul(transpose(self%resultants), self%columns)
       singular = .false.
       do j = 1, size(self%free)
          do i = 1, size(self%free)
@@ -598,10 +614,7 @@ contains
       n = size(self%contact) + size(self%held)
       call precondition_tractions(self, model, rows(:n))
       if (size(self%free) == 0) return
-      call spread_tractions(self, rows)
-      do i = 1, size(self%free)
-         motion(i) = resultant(self, self%free(i)) - rows(n + i)
-      end do
+      motion = [(dot_product(self%resultants(:, i), rows(:n)) - rows(n + i), i=1, size(self%free))]
       factors = self%schur
       call dgesv(size(motion), 1, factors, size(motion), pivots, motion, size(motion), info)
       rows(:n) = rows(:n) - matmul(self%columns, motion)
@@ -628,7 +641,7 @@ contains
          rows(m + 1:) = rows(m + 1:) - self%stress/self%length*self%tangential(self%held) &
                         + self%softness*self%held_slope*self%pressure(self%held)
       end if
-      call self%preconditioner%apply_held(rows(m + 1:))
+      if (any(abs(rows(m + 1:)) > 0.0_wp)) call self%preconditioner%apply_held(rows(m + 1:))
    end subroutine precondition_tractions
 
    !> Set fields to the tractions and displacements in `found` and the motions. Prescribed forces and motions are exact.

@@ -73,19 +73,17 @@ module mfv_chain
 contains
 
    !> An interval in a number of equal `increments`. `start`: its start with the statuses as the loads begin to change; without
-   !> statuses if they are not known. `coarser`: a chain of the same interval, for a first guess of the statuses. `path` is
-   !> unchanged.
-   subroutine make_chain(path, interval, increments, start, chain, coarser)
+   !> statuses if they are not known. `other`: a chain of the same interval, for a first guess. `path` is unchanged.
+   subroutine make_chain(path, interval, increments, start, chain, other)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
       integer, intent(in) :: increments
       type(sample_type), intent(in) :: start
       type(chain_type), intent(out) :: chain
-      type(chain_type), intent(in), optional :: coarser
+      type(chain_type), intent(in), optional :: other
       type(contact_state_type) :: present_state
       logical, allocatable :: held(:)
       integer, allocatable :: status(:)
-      logical :: known, by_pressure
       integer :: i
 
       present_state = path%state
@@ -98,14 +96,7 @@ contains
       do i = 1, increments
          status = path%state%status
          if (chain%fronts) held = holding_before(chain, start, i)
-         by_pressure = .false.
-         if (i == 1 .and. chain%fronts .and. .not. (chain%begins .or. present(coarser))) call guess_growth(path, interval)
-         chain%after(i) = path%state%fields
-         if (i == 1) call guess_slip(path, interval, reached(chain, i), chain%after(i), by_pressure, held)
-         known = .false.
-         if (present(coarser) .and. .not. by_pressure) call guess_from(path, coarser, start, chain, i, known)
-         if (chain%fronts .and. .not. (chain%begins .or. known)) &
-            call guess_as_before(path, interval, i, increments, chain%after(i), known)
+         call guess_end(path, interval, start, chain, i, held, other)
          call find_statuses_on_mesh(path, interval, reached(chain, i), chain%after(i), chain%found, chain%exceeded, held, &
                                     chain%begins)
          if (.not. chain%found) exit
@@ -173,30 +164,55 @@ contains
       chain%node_wise_error = chain%node_wise_error + error
    end subroutine add_node_wise_work
 
-   !> A first guess of the end of increment `i` from a coarser chain: the same state, or midway to the next one. If the slip of
-   !> touching nodes does not follow from the fronts, only statuses of nodes in contact are guessed, where there is the same state
-   !> (`known`).
-   subroutine guess_from(path, coarser, start, chain, i, known)
+   !> A first guess of the end of increment `i`: the same state of the `other` chain, or of an equal interval before; else a state
+   !> midway between two of the other chain, or zones that have grown or begun to slip. `held`: see guess_slip.
+   subroutine guess_end(path, interval, start, chain, i, held, other)
       class(contact_path_type), intent(inout) :: path
-      type(chain_type), intent(in) :: coarser
+      type(segment_type), intent(in) :: interval
       type(sample_type), intent(in) :: start
       type(chain_type), intent(inout) :: chain
       integer, intent(in) :: i
-      logical, intent(out) :: known
-      integer, dimension(size(path%state%status)) :: before, after
+      logical, intent(in), optional :: held(:)
+      type(chain_type), intent(in), optional :: other
+      logical :: known, by_pressure
       integer :: next
 
-      next = (i*coarser%increments + chain%increments - 1)/chain%increments
-      after = coarser%before(next)%status
-      known = mod(i*coarser%increments, chain%increments) == 0
+      chain%after(i) = path%state%fields
+      by_pressure = .false.
+      known = .false.
+      next = 0
+      if (present(other)) next = (i*other%increments + chain%increments - 1)/chain%increments
+      if (next > 0) known = next*chain%increments == i*other%increments
+      if (.not. known) then
+         if (chain%fronts .and. .not. chain%begins) call guess_growth(path, interval, reached(chain, i - 1), reached(chain, i))
+         if (i == 1) call guess_slip(path, interval, reached(chain, i), chain%after(i), by_pressure, held)
+      end if
+      if (next > 0 .and. .not. by_pressure) call guess_from(path, other, next, known, start, chain, i)
+      if (chain%fronts .and. .not. (chain%begins .or. known)) &
+         call guess_as_before(path, interval, i, chain%increments, chain%after(i), known)
+   end subroutine guess_end
+
+   !> A first guess of the end of increment `i` from the state `next` of another chain: if that is the same (`known`), or midway to
+   !> it. If the slip of touching nodes does not follow from the fronts, only statuses of nodes in contact are guessed.
+   subroutine guess_from(path, other, next, known, start, chain, i)
+      class(contact_path_type), intent(inout) :: path
+      type(chain_type), intent(in) :: other
+      integer, intent(in) :: next
+      logical, intent(in) :: known
+      type(sample_type), intent(in) :: start
+      type(chain_type), intent(inout) :: chain
+      integer, intent(in) :: i
+      integer, dimension(size(path%state%status)) :: before, after
+
+      after = other%before(next)%status
       if (known) then
-         call path%set_status(coarser%fronts .or. in_contact(path%state%status) .and. in_contact(after), after)
-         call chain%after(i)%copy_from(coarser%after(next))
-      else if (chain%fronts .and. .not. chain%begins .and. chain%increments == 2*coarser%increments) then
+         call path%set_status(other%fronts .or. in_contact(path%state%status) .and. in_contact(after), after)
+         call chain%after(i)%copy_from(other%after(next))
+      else if (chain%fronts .and. .not. chain%begins .and. chain%increments == 2*other%increments) then
          before = start%status
          if (i > 1) before = chain%before(i - 1)%status
          call path%set_status(spread(.true., 1, size(after)), statuses_between(before, after))
-         chain%after(i) = mean(path%state%fields, coarser%after(next))
+         chain%after(i) = mean(path%state%fields, other%after(next))
       end if
    end subroutine guess_from
 
@@ -508,11 +524,12 @@ contains
       call path%set_status(in_contact(path%state%status), status)
    end subroutine guess_slip
 
-   !> A first guess of the statuses after a normal force has grown: zones about the middle of the contact that have grown with it,
-   !> as under a cylinder.
-   subroutine guess_growth(path, interval)
+   !> A first guess of the statuses after a normal force has grown between two fractions of an interval: zones about the middle of
+   !> the contact that have grown with it, as under a cylinder.
+   subroutine guess_growth(path, interval, from, to)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
+      real(wp), intent(in) :: from, to
       type(zone_type), allocatable :: patches(:)
       real(wp) :: middle, growth
       integer :: i, n, status(size(path%state%status))
@@ -520,8 +537,8 @@ contains
       n = size(status)
       patches = zones_of(in_contact(path%state%status))
       associate (load => interval%load(motion_approach))
-         if (load%control /= control_force .or. .not. (load%value > 0.0_wp .and. load%rate > 0.0_wp)) return
-         growth = sqrt(1.0_wp + load%rate/load%value)
+         if (load%control /= control_force .or. .not. (load%value + from*load%rate > 0.0_wp .and. load%rate > 0.0_wp)) return
+         growth = sqrt((load%value + to*load%rate)/(load%value + from*load%rate))
       end associate
       if (size(patches) /= 1) return
       if (patches(1)%first == 1 .or. patches(1)%last == n) return

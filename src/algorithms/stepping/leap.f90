@@ -62,6 +62,8 @@ module mfv_leap
    !> the longest that was tried for it. `by_violations`: whether that interval is applied by events.
    type :: leap_progress_type
       real(wp) :: done = 0.0_wp, goal = 0.0_wp, length = 0.0_wp, longest = 0.0_wp
+      !> Increments of the first chain of the next interval.
+      integer :: increments = 2
       logical :: by_violations = .false.
       !> A contact that has begun in the segment, without friction, at the goal: the largest pressure, force/length^2; the friction
       !> limit, force. Zero: it has not (has_begun).
@@ -166,6 +168,7 @@ contains
       end if
       if (accepted) then
          call accept_chain(path, interval, progress, chain)
+         if (has_begun(progress)) progress%increments = max(chain%increments, 2)
          call advance(progress)
          call finish_large_increment(path, segment, progress%done, observer, error)
       else if (chain%rough) then
@@ -202,7 +205,7 @@ contains
       type(leap_progress_type), intent(in) :: progress
       type(chain_type), intent(in) :: chain
 
-      is_worth_it = .not. has_begun(progress) .or. 2*chain%solves < solves_per_change*chain%changes
+      is_worth_it = .not. has_begun(progress) .or. max(2/chain%increments, 1)*chain%solves < solves_per_change*chain%changes
    end function is_worth_it
 
    !> Whether the pressures depend on the shear tractions, so that these depend on how the contact grows.
@@ -299,8 +302,9 @@ contains
       call advance(progress)
    end subroutine continue_by_violations
 
-   !> An interval in chains of more and more increments. `accepted`: whether one is accurate with fewer solves than event stepping;
-   !> `chain`: that one, or the last. `path` is unchanged.
+   !> An interval in chains of more and more increments. The first one has as many as were needed before, at least two unless
+   !> contact begins: the statuses of half as many, longer ones are easily found from it, but not by themselves. `accepted`: whether
+   !> one is accurate with fewer solves than event stepping; `chain`: that one, or the last. `path` is unchanged.
    subroutine refine(path, interval, progress, chain, accepted)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
@@ -309,10 +313,13 @@ contains
       logical, intent(out) :: accepted
       type(sample_type) :: start
       type(chain_type) :: finer
+      !> Both sums of the dissipation without rates may err in the same direction by more than they differ.
+      real(wp), parameter :: both_wrong = 0.3_wp
       integer :: increments
-      logical :: rough
+      logical :: rough, begins
 
       rough = is_rough(path%state%status)
+      begins = .not. any(in_contact(path%state%status))
       if (may_depend_on_path(path, interval) .and. (path%leaving%pending .or. .not. rough)) call find_start(path, interval, start)
       call find_stiffness(path, interval, start)
       ! Fronts of patches of few nodes are not resolved.
@@ -322,25 +329,43 @@ contains
       associate (nodes => max(path%state%contact_nodes(), 1))
          if (accepted .and. path%record_events) increments = max(1, min(most_recorded, nodes/nodes_a_record, nodes_recorded/nodes))
       end associate
+      if (.not. (accepted .or. begins)) increments = progress%increments
       call make_chain(path, interval, increments, start, chain)
       accepted = accepted .and. chain%found
-      if (.not. chain%found) return
-      if (accepted .or. chain%start_error > path%model%scene%method%accuracy*reference_traction(path, progress, chain)) return
-      if (.not. is_worth_it(progress, chain)) return
-      increments = 2
+      if (accepted .or. .not. chain%found) return
+      if (.not. promises(path, progress, chain)) return
+      if (increments > 1) then
+         finer = chain
+         call make_chain(path, interval, increments/2, start, chain, finer)
+         if (.not. chain%found) return
+         ! As if every other state had been known.
+         finer%solves = (finer%solves + 2*chain%solves)/2
+      else
+         call make_chain(path, interval, 2, start, finer, chain)
+      end if
       do
-         call make_chain(path, interval, increments, start, finer, chain)
          if (finer%found) call compare(path, interval, chain, finer)
          chain = finer
          if (.not. chain%found) return
          call choose(path, progress, chain, accepted, increments)
-         if (chain%fronts .and. .not. (accepted .or. chain%begins)) &
+         if (chain%fronts .and. .not. chain%begins .and. relative_work_error(path, progress, chain) > both_wrong) &
             call refine_samples(path, interval, progress, start, chain, accepted, increments)
          if (chain%fronts .and. accepted .and. .not. (chain%begins .or. allocated(chain%samples)) .and. shares_work(chain)) &
             call sample_works(path, interval, progress, start, chain)
          if (accepted .or. increments == 0) return
+         call make_chain(path, interval, increments, start, finer, chain)
       end do
    end subroutine refine
+
+   !> Whether chains of more increments may be accurate, with fewer solves than events.
+   pure logical function promises(path, progress, chain)
+      class(contact_path_type), intent(in) :: path
+      type(leap_progress_type), intent(in) :: progress
+      type(chain_type), intent(in) :: chain
+
+      promises = chain%start_error <= path%model%scene%method%accuracy*reference_traction(path, progress, chain) .and. &
+                 is_worth_it(progress, chain)
+   end function promises
 
    !> If the tractions of a chain are accurate, but not its dissipation, take more and more samples. `accepted`, `increments`: see
    !> choose.
@@ -352,7 +377,8 @@ contains
       type(chain_type), intent(inout) :: chain
       logical, intent(inout) :: accepted
       integer, intent(inout) :: increments
-      !> Fewest samples under changing normal loads, where fewer do not show their error.
+      !> Fewest samples under changing normal loads, where fewer do not show their error. Where the contact has begun in the segment
+      !> the error of the sum without rates is taken, which is larger.
       integer, parameter :: least_samples = 4
       logical :: found
 
@@ -361,8 +387,9 @@ contains
          call add_samples(path, interval, start, chain, found)
          if (.not. found) return
          call weigh_samples(path, progress, chain)
-         accepted = relative_work_error(path, progress, chain) <= 1.0_wp .and. &
-                    (ubound(chain%samples, 1) >= least_samples .or. .not. abs(interval%load(motion_approach)%rate) > 0.0_wp)
+         accepted = relative_work_error(path, progress, chain) <= 1.0_wp
+         if (accepted .and. abs(interval%load(motion_approach)%rate) > 0.0_wp .and. .not. has_begun(progress)) &
+            accepted = ubound(chain%samples, 1) >= least_samples
          if (accepted .and. shares_work(chain)) &
             accepted = chain%motion_work_error <= path%model%scene%method%accuracy*reference_work(path, progress, chain)
          if (accepted) return
@@ -412,11 +439,13 @@ contains
    !> difference to the sum node by node, extrapolated at second order, but at least a sixth of that to the sum itself; twice as
    !> much with two samples; and at least a third of the change from half as many, or from the sum without rates (where the load
    !> passes a former reversal, rates jump, and the sums converge at second order). While a contact grows that has begun in the
-   !> segment, the sum node by node is much worse, since nodes touch: there it is taken to be this change, three times as much.
+   !> segment, the sum node by node is much worse, since nodes touch: there it is taken to be this change, three times as much, or
+   !> a quarter of that due to edges (under coatings and waves at most a fifth of this was found).
    subroutine weigh_samples(path, progress, chain)
       class(contact_path_type), intent(in) :: path
       type(leap_progress_type), intent(in) :: progress
       type(chain_type), intent(inout) :: chain
+      real(wp), parameter :: part_of_edges = 0.25_wp
       real(wp) :: by_nodes, coarse, error, few, coarse_works(motion_count)
 
       coarse = chain%by_slopes
@@ -426,7 +455,7 @@ contains
       chain%work = chain%by_slopes
       few = merge(2.0_wp, 1.0_wp, ubound(chain%samples, 1) == 2)
       if (has_begun(progress)) then
-         chain%work_error = max(abs(chain%by_slopes - coarse), error)
+         chain%work_error = max(abs(chain%by_slopes - coarse), part_of_edges*error)
       else
          chain%work_error = max(few*abs(chain%by_slopes - by_nodes)/2.0_wp, &
                                 few*abs(chain%by_slopes - chain%node_wise)/6.0_wp, error, abs(chain%by_slopes - coarse)/3.0_wp)
@@ -693,7 +722,7 @@ contains
    end subroutine find_moving
 
    !> Errors of the finer of two chains of an interval: tractions at the order at which they converge, at most the first, with
-   !> fronts after the contact has begun (these double) the second, and the square root if that is not known; dissipation by
+   !> fronts after the contact has begun the second, and at half that order if it is not known; dissipation by
    !> mfv_chain_dissipation. In rough contacts, where single nodes of small patches may close in another order, that of tractions
    !> is a root mean square, times the ratio of the largest traction to theirs.
    subroutine compare(path, interval, coarser, finer)
@@ -701,11 +730,10 @@ contains
       type(segment_type), intent(in) :: interval
       type(chain_type), intent(in) :: coarser
       type(chain_type), intent(inout) :: finer
-      !> Orders of convergence that are taken as such.
-      real(wp), parameter :: least_order = 0.5_wp
-      real(wp) :: order, ratio, most_order
+      real(wp) :: order, ratio, least_order, most_order
 
       most_order = merge(2.0_wp, 1.0_wp, finer%fronts .and. .not. finer%begins)
+      least_order = 0.5_wp*most_order
       ratio = real(finer%increments, wp)/real(coarser%increments, wp)
       associate (a => coarser%after(coarser%increments), b => finer%after(finer%increments))
          finer%difference = max(maxval(abs(a%pressure - b%pressure)), maxval(abs(a%shear - b%shear)))

@@ -14,7 +14,7 @@ module mfv_draft
    use mfv_namelist, only: entry_type, group_type, parse_namelists, resize_entries, resize_groups, write_namelists
    use mfv_numbers, only: write_real
    use mfv_status, only: MFV_INPUT_ERROR
-   use mfv_strings, only: has_word, lower_case, quoted, string_type, to_text
+   use mfv_strings, only: has_word, line_feed, lower_case, quoted, string_type, to_text
    use mfv_text_file, only: directory_of, find_fault_of_text
    implicit none
    private
@@ -386,7 +386,6 @@ contains
    subroutine write_text(self, text)
       class(draft_type), intent(in) :: self
       character(:), allocatable, intent(out) :: text
-      character(len=1), parameter :: line_feed = achar(10)
       integer :: i
 
       text = ''

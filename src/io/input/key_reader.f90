@@ -8,7 +8,7 @@ module mfv_key_reader
    use mfv_namelist, only: entry_type, group_type, show_entry
    use mfv_numbers, only: is_reasonable, read_real, reasonable_sizes
    use mfv_status, only: MFV_INPUT_ERROR
-   use mfv_strings, only: has_word, list_of_words, lower_case, shortened, string_type, to_text
+   use mfv_strings, only: decimal_digits, has_word, list_of_words, lower_case, shortened, string_type, to_text
    implicit none
    private
    public :: reader_type, check_groups, check_entries, count_groups, line_of, find_file, fail, decimal_point, needs_friction
@@ -191,11 +191,10 @@ contains
    !> Whether the values may be a single number with a decimal comma.
    pure logical function has_decimal_comma(entry)
       type(entry_type), intent(in) :: entry
-      character(*), parameter :: digits = '0123456789'
 
       has_decimal_comma = size(entry%values) == 2 .and. .not. any(entry%is_quoted)
-      if (has_decimal_comma) has_decimal_comma = verify(entry%values(1)%text, '+-'//digits) == 0 .and. &
-                                                 verify(entry%values(2)%text, digits//'eEdD+-') == 0
+      if (has_decimal_comma) has_decimal_comma = verify(entry%values(1)%text, '+-'//decimal_digits) == 0 .and. &
+                                                 verify(entry%values(2)%text, decimal_digits//'eEdD+-') == 0
    end function has_decimal_comma
 
    !> Whether a text starts with a letter or a per cent sign, as a unit does.

@@ -2,7 +2,8 @@
 !> (mfv_key_reader), and the reference is printed from it. Names of keys with their groups: `friction%mu`, `body(2)%radius`.
 module mfv_keys
    use mfv_kinds, only: wp
-   use mfv_strings, only: add_text, has_word, list_of_words, lower_case, find_nearest_name, quoted, string_type, to_text
+   use mfv_strings, only: add_text, find_nearest_name, has_word, line_feed, list_of_words, lower_case, quoted, string_type, &
+                          to_text
    implicit none
    private
    public :: key_type, catalogue_type, kind_real, kind_integer, kind_logical, kind_text, kind_choice, &
@@ -43,7 +44,6 @@ module mfv_keys
 
    !> Room for keys while they are added.
    integer, parameter :: most_keys = 128
-   character(len=1), parameter :: line_feed = achar(10)
 
 contains
 

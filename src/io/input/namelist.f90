@@ -7,7 +7,7 @@
 module mfv_namelist
    use mfv_error, only: error_type, set_error
    use mfv_status, only: MFV_INPUT_ERROR
-   use mfv_strings, only: lower_case, shortened, string_type, to_text
+   use mfv_strings, only: carriage_return, decimal_digits, line_feed, lower_case, shortened, string_type, tab, to_text
    use mfv_text_file, only: byte_order_mark, find_fault_of_text
    implicit none
    private
@@ -37,12 +37,10 @@ module mfv_namelist
       integer :: commas = 0
    end type cursor_type
 
-   character(*), parameter :: line_feed = achar(10), tab = achar(9), carriage_return = achar(13)
    character(*), parameter :: blanks = ' '//tab//carriage_return//line_feed
    !> What ends a value without quotes, besides blanks; the last two are quote and ampersand.
    character(*), parameter :: value_ends = ",/!='"//achar(34)//achar(38)
    character(*), parameter :: name_characters = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_'
-   character(*), parameter :: digits = '0123456789'
 
    !> Limits of groups in a text and of values of a key; more would take gigabytes.
    integer, parameter :: most_groups = 1000000, most_values = 10000000
@@ -274,7 +272,7 @@ contains
       integer :: length, code
 
       repeats = 1
-      length = verify(cursor%text(cursor%at:), digits) - 1
+      length = verify(cursor%text(cursor%at:), decimal_digits) - 1
       if (length < 1) return
       if (cursor%text(cursor%at + length:cursor%at + length) /= '*') return
       read (cursor%text(cursor%at:cursor%at + length - 1), *, iostat=code) repeats

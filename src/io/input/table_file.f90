@@ -10,15 +10,14 @@ module mfv_table_file
    use mfv_kinds, only: wp
    use mfv_numbers, only: is_reasonable, read_real, reasonable_sizes
    use mfv_status, only: MFV_INPUT_ERROR
-   use mfv_strings, only: add_text, lower_case, shortened, string_type, to_text
+   use mfv_strings, only: add_text, carriage_return, decimal_digits, line_feed, lower_case, shortened, string_type, tab, to_text
    use mfv_text_file, only: byte_order_mark, find_fault_of_text, read_text
    use mfv_tolerances, only: significant
    implicit none
    private
    public :: read_table, read_named_table
 
-   character(*), parameter :: line_feed = achar(10), carriage_return = achar(13), tab = achar(9)
-   character(*), parameter :: blanks = ' '//tab, quotation_marks = '"''', digits = '0123456789'
+   character(*), parameter :: blanks = ' '//tab, quotation_marks = '"'''
    !> Cells without a value.
    character(len=4), parameter :: no_values(11) = [character(4) :: '', 'nan', 'na', 'n/a', 'null', 'bad', '-', '--', '---', '*', &
                                                                                                                    '***']
@@ -460,7 +459,7 @@ contains
          if (is_comment(text%line(i))) cycle
          if (is_text(text%line(i)) .and. first > 0) exit
          call read_row(text%line(i), text%decimal_comma, single, bad)
-         is_number = bad == 0 .and. verify(trim(adjustl(text%line(i))), digits) == 0
+         is_number = bad == 0 .and. verify(trim(adjustl(text%line(i))), decimal_digits) == 0
          if (is_number .and. first > 0 .and. count_line == 0) then
             count_line = i
             counted = single(1)
@@ -519,7 +518,8 @@ contains
 
       n = size(rows) - 1
       if (n < 1) return
-      if (verify(trim(adjustl(text%line(rows(1)))), digits) > 0 .or. verify(trim(adjustl(text%line(rows(2)))), digits) == 0) return
+      if (verify(trim(adjustl(text%line(rows(1)))), decimal_digits) > 0) return
+      if (verify(trim(adjustl(text%line(rows(2)))), decimal_digits) == 0) return
       if (abs(table(1, 1) - n) < 1.5_wp) table = table(:, 2:)
    end subroutine drop_count
 
@@ -607,7 +607,7 @@ contains
 
       first = max(1, verify(line, blanks//quotation_marks))
       word = lower_case(line(first:first + scan(line(first:)//' ', blanks//',;"''') - 2))
-      is_text = scan(lower_case(line), letters) > 0 .and. scan(word, digits//'+-.') /= 1 .and. &
+      is_text = scan(lower_case(line), letters) > 0 .and. scan(word, decimal_digits//'+-.') /= 1 .and. &
                 .not. any(word == [character(8) :: 'nan', 'inf', 'infinity'])
    end function is_text
 

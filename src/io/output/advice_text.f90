@@ -7,12 +7,10 @@ module mfv_advice_text
    use mfv_namelist, only: group_type, parse_namelists, write_entry
    use mfv_numbers, only: read_real
    use mfv_scene, only: solver_fft, solver_names
-   use mfv_strings, only: has_word, list_of_words, quoted, shortened, string_type, to_text, word_of
+   use mfv_strings, only: has_word, line_feed, list_of_words, quoted, shortened, string_type, to_text, word_of
    implicit none
    private
    public :: write_advice, read_wanted_error, read_wanted_quantities
-
-   character(len=1), parameter :: line_feed = achar(10)
 
 contains
 

@@ -12,7 +12,7 @@ module mfv_hdf5_restart
    use mfv_error, only: error_type, set_error
    use mfv_friction_law, only: memory_size
    use mfv_hdf5_reader, only: read_vector
-   use mfv_history, only: history_record_type, history_type
+   use mfv_history, only: history_type
    use mfv_kinds, only: wp
    use mfv_contact_system, only: solver_work_type
    use mfv_motions, only: motions, motion_count, user_motions

@@ -2,7 +2,7 @@
 !> their names from here.
 module mfv_result_fields
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan, ieee_positive_inf, ieee_quiet_nan, ieee_value
-   use mfv_body, only: body_type
+   use mfv_body, only: body_names, body_type
    use mfv_geometry, only: shape_names
    use mfv_body_pair, only: lower_body, upper_body
    use mfv_case, only: case_type
@@ -363,20 +363,20 @@ contains
    subroutine add_compliance(list, simulation)
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
-      character(*), parameter :: blocks(4) = ['wp', 'wt', 'up', 'ut'], bodies(2) = ['lower', 'upper']
+      character(*), parameter :: blocks(4) = ['wp', 'wt', 'up', 'ut']
       integer :: i, bytes
 
       associate (pair => simulation%contact%model%compliance)
          do i = 1, size(blocks)
             call list%add(blocks(i), merge(1, 0, pair%elastic_block(i)), 'whether C_'//blocks(i)//' exists')
          end do
-         do i = 1, size(bodies)
+         do i = 1, size(body_names)
             bytes = 0
             if (pair%deforms(i)) bytes = int(pair%body(i)%compliance%bytes())
-            call list%add(bodies(i)//'_bytes', bytes, 'bytes of the '//bodies(i)//" body's kernels or matrix")
+            call list%add(body_names(i)//'_bytes', bytes, 'bytes of the '//body_names(i)//" body's kernels or matrix")
             if (simulation%contact%model%scene%has_layers(i == 2)) &
-               call list%add(bodies(i)//'_kernel_error', pair%body(i)%compliance%kernel_error, '1', 'estimated error of the '// &
-                             'kernels of the layers of the '//bodies(i)//' body, over their largest value')
+               call list%add(body_names(i)//'_kernel_error', pair%body(i)%compliance%kernel_error, '1', 'estimated error of '// &
+                             'the kernels of the layers of the '//body_names(i)//' body, over their largest value')
          end do
       end associate
    end subroutine add_compliance
@@ -436,7 +436,7 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(contact_state_type), intent(in) :: state
       real(wp), dimension(simulation%contact%model%nodes()) :: normal, tangential
-      character(*), parameter :: prefix(2) = [character(6) :: '', 'upper_'], body(2) = [character(5) :: 'lower', 'upper']
+      character(*), parameter :: prefix(2) = [character(6) :: '', 'upper_']
       integer :: side
 
       do side = lower_body, upper_body
@@ -447,9 +447,9 @@ contains
             tangential = tangential + merge(-1.0_wp, 1.0_wp, side == lower_body)*arm*state%fields%motion(bulk_motions(side))
          end associate
          call list%add(trim(prefix(side))//'normal_displacement', normal, along_nodes, 'length', 'displacement w of the '// &
-                       body(side)//' surface into its body')
+                       body_names(side)//' surface into its body')
          call list%add(trim(prefix(side))//'tangential_displacement', modelled(simulation, tangential), along_nodes, 'length', &
-                       'displacement u of the '//body(side)//' surface to the right (not modelled without friction)')
+                       'displacement u of the '//body_names(side)//' surface to the right (not modelled without friction)')
       end do
    end subroutine add_displacements
 
@@ -923,7 +923,6 @@ call list%add('contact_right', simulation%contact%model%scene%x_of_arc(patches%r
       type(list_type), intent(inout) :: list
       type(simulation_type), intent(in) :: simulation
       integer, parameter :: along = along_records
-      character(*), parameter :: bodies(2) = ['lower', 'upper']
       real(wp), dimension(simulation%contact%history%records, motion_count) :: force, motion
       logical :: has_stresses(2)
       integer :: i
@@ -950,13 +949,13 @@ call list%add('contact_right', simulation%contact%model%scene%x_of_arc(patches%r
          call list%add('step', r%step, along, 'number of the step, 0 before the first')
          call list%add('linear_solves', r%linear_solves, along, linear_solves_meaning)
          if (allocated(simulation%stress_at)) then
-            do i = 1, size(bodies)
+            do i = 1, size(body_names)
                if (.not. has_stresses(i)) cycle
-               call list%add(bodies(i)//'_tension', r%tension(i), along, 'force/length^2', 'largest tension along the surface '// &
-                             'of the '//bodies(i)//' body; NaN at events')
-               call list%add(bodies(i)//'_tension_x', r%tension_x(i), along, 'length', 'where it is: x')
-               call list%add(bodies(i)//'_surface_stress', r%surface_stress(i), along, 'force/length^2', 'stress along the '// &
-                             'surface of the '//bodies(i)//' body at x = stress_at; NaN at events')
+               call list%add(body_names(i)//'_tension', r%tension(i), along, 'force/length^2', 'largest tension along the '// &
+                             'surface of the '//body_names(i)//' body; NaN at events')
+               call list%add(body_names(i)//'_tension_x', r%tension_x(i), along, 'length', 'where it is: x')
+               call list%add(body_names(i)//'_surface_stress', r%surface_stress(i), along, 'force/length^2', 'stress along the '// &
+                             'surface of the '//body_names(i)//' body at x = stress_at; NaN at events')
             end do
          end if
       end associate

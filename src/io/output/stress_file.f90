@@ -10,6 +10,7 @@ module mfv_stress_file
    use mfv_interior
    use mfv_kinds, only: wp
    use mfv_motions, only: motions, bulk_motions
+   use mfv_numbers, only: largest_size
    use mfv_result_fields, only: along_nodes, list_type, step_group
    use mfv_status, only: MFV_FILE_ERROR, MFV_INPUT_ERROR
    use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
@@ -88,8 +89,6 @@ contains
       type(stress_result_type), intent(inout) :: result
       type(error_type), allocatable, intent(out) :: error
       character(:), allocatable :: text, source, directory, state, position, bulk_path
-      !> Limit of numbers in a result; products of larger ones would overflow.
-      real(wp), parameter :: largest_size = 1.0e100_wp
       real(wp), allocatable, dimension(:) :: arc, width, pressure, shear, contact_edge, stick_edge, bulk
       real(wp) :: none
       logical :: available
@@ -173,8 +172,7 @@ contains
       result%largest = largest_von_mises(interior)
       result%tension = largest_tension(interior)
       result%yield_strength = interior%body%strength_of(1)
-      if (ieee_is_finite(result%largest%y)) &
-         result%yield_strength = interior%body%strength_of(interior%body%layer_at(abs(result%largest%y)))
+      if (ieee_is_finite(result%largest%y)) result%yield_strength = interior%body%strength_at(result%largest%y)
       if (allocated(request%x)) then
          result%x = request%x
          result%y = request%y

@@ -4,13 +4,11 @@ module mfv_stress_text
    use mfv_interior, only: stress_count, stress_names
    use mfv_kinds, only: wp
    use mfv_stress_file, only: stress_request_type, stress_result_type
-   use mfv_strings, only: to_text
+   use mfv_strings, only: line_feed, to_text
    use mfv_summary, only: unit_suffix
    implicit none
    private
    public :: list_stresses, summarize_stresses
-
-   character(*), parameter :: line_feed = achar(10)
 
 contains
 

@@ -1,6 +1,7 @@
 !> The summary of a result, for a terminal.
 module mfv_summary
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use mfv_body, only: body_names
    use mfv_case, only: case_type
    use mfv_contact_model, only: contact_model_type, new_contact_model
    use mfv_interior, only: has_interior
@@ -11,13 +12,11 @@ module mfv_summary
    use mfv_result_fields, only: field_named, field_type, group_fields
    use mfv_simulation, only: simulation_type
    use mfv_status, only: status_outcome
-   use mfv_strings, only: string_type, to_text
+   use mfv_strings, only: line_feed, string_type, to_text
    use mfv_tolerances, only: visible
    implicit none
    private
    public :: summarize, summarize_check, unit_suffix
-
-   character(len=1), parameter :: line_feed = achar(10)
 
 contains
 
@@ -146,21 +145,20 @@ contains
       type(field_type), intent(in) :: fields(:)
       type(contact_model_type), intent(in) :: model
       logical, intent(in) :: touches
-      character(*), parameter :: bodies(2) = ['lower', 'upper']
       character(:), allocatable :: words
       logical :: has_stresses(2)
       integer :: i
 
       words = ''
       has_stresses = [has_interior(model%scene%lower), has_interior(model%scene%upper)]
-      do i = 1, size(bodies)
-         if (field_named(fields, bodies(i)//'_tension_x') > 0) then
-            words = words//', '//bodies(i)//' body '//amount(fields, bodies(i)//'_tension')//' at x = '// &
-                    amount(fields, bodies(i)//'_tension_x')
-         else if (model%moves(bulk_motions(i)) .and. field_named(fields, bodies(i)//'_tension') > 0) then
-            words = words//', '//bodies(i)//' body '//amount(fields, bodies(i)//'_tension')//' far from the contact'
-         else if (touches .and. has_stresses(i) .and. field_named(fields, bodies(i)//'_tension') == 0) then
-            words = words//', '//bodies(i)//' body singular at a sharp corner'
+      do i = 1, size(body_names)
+         if (field_named(fields, body_names(i)//'_tension_x') > 0) then
+            words = words//', '//body_names(i)//' body '//amount(fields, body_names(i)//'_tension')//' at x = '// &
+                    amount(fields, body_names(i)//'_tension_x')
+         else if (model%moves(bulk_motions(i)) .and. field_named(fields, body_names(i)//'_tension') > 0) then
+            words = words//', '//body_names(i)//' body '//amount(fields, body_names(i)//'_tension')//' far from the contact'
+         else if (touches .and. has_stresses(i) .and. field_named(fields, body_names(i)//'_tension') == 0) then
+            words = words//', '//body_names(i)//' body singular at a sharp corner'
          end if
       end do
       if (words /= '') call add_line(text, 'tension at the end', words(3:))
@@ -244,13 +242,12 @@ contains
    subroutine add_compliance(text, model)
       character(:), allocatable, intent(inout) :: text
       type(contact_model_type), intent(in) :: model
-      character(*), parameter :: bodies(2) = ['lower', 'upper']
       character(:), allocatable :: words
       integer :: i
 
       words = ''
-      do i = 1, size(bodies)
-         words = words//', '//bodies(i)//' body '
+      do i = 1, size(body_names)
+         words = words//', '//body_names(i)//' body '
          if (model%compliance%deforms(i)) then
             words = words//to_text(int(model%compliance%body(i)%compliance%bytes()))//' bytes'
          else
