@@ -307,6 +307,24 @@ def test_interrupted_error_estimate_keeps_the_result(tmp_path):
         assert "error estimate      none: " in output
 
 
+@pytest.mark.parametrize("thickness", [0.002, 0.0063])
+def test_advice_resolves_the_layers(tmp_path, thickness):
+    """No mesh is proposed that a run warns of, although far fewer nodes give the error that is asked for."""
+    text = f"""&body shape='half_plane', youngs_modulus=70000, poisson_ratio=0.33 /
+&layer body=1, thickness={thickness}, youngs_modulus=300000, poisson_ratio=0.2 /
+&body shape='disk', radius=10, youngs_modulus=210000, poisson_ratio=0.3 /
+&friction law='coulomb', mu=0.3 /
+&step normal_force=50 /
+&step force_ratio=0.6 /
+"""
+    advice = mfv_run("--advise", "error=5e-2", case(tmp_path, text).name, cwd=tmp_path)
+    assert advice.returncode == COMPLETE
+    advised = mfv_run(case(tmp_path, text + advice.stdout, "advised.nml").name, cwd=tmp_path)
+    assert advised.returncode == COMPLETE and "intervals thick" not in advised.stdout
+    coarse = mfv_run(case(tmp_path, text + "&mesh nodes=41 /\n", "coarse.nml").name, cwd=tmp_path)
+    assert "intervals thick" in coarse.stdout
+
+
 def test_advice_can_be_pasted_and_holds(tmp_path):
     text = MINDLIN.format(force=2.8e-4, name="advised", more="").replace("&output", "&solver algorithm='mfv' /\n&output")
     path = case(tmp_path, text)
