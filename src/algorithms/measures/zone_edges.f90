@@ -295,8 +295,8 @@ contains
    end function held
 
    !> Whether nodes of a slip zone rest: the slip since their last stick, `slipped`, is next to nothing beside the largest in the
-   !> zone, or less beside that in the patch, `largest`, and of one size at more neighbouring nodes than where it grows with the power
-   !> 3/2 of the distance from a stick zone, or faster. All slips: lengths.
+   !> zone, or less beside that in the patch, `largest`, and of one size at more neighbouring nodes than where it grows with the
+   !> power 3/2 of the distance from a stick zone, or faster. All slips: lengths.
    pure function rests(slipped, largest)
       real(wp), intent(in) :: slipped(:), largest
       logical :: rests(size(slipped))
