@@ -382,7 +382,7 @@ contains
    pure integer function stick_zones(simulation)
       type(simulation_type), intent(in) :: simulation
 
-      stick_zones = size(zones_of(held(simulation%contact%state)))
+      stick_zones = size(zones_of(held(simulation%contact%model, simulation%contact%state)))
    end function stick_zones
 
    !> Observables that are undefined on a coarser mesh are not resolved, nor are those in `others`, separated by blanks, which have
@@ -709,12 +709,12 @@ contains
          ! Errors of the two edges of one patch add up; those of several patches are independent.
          contact = sqrt(2.0_wp*sum(patches%left_error**2 + patches%right_error**2))
          stick = model%interval()
-         if (any(held(state))) &
+         if (any(held(model, state))) &
             stick = sqrt(2.0_wp*sum([(sum(patches(i)%stick%left_error**2 + patches(i)%stick%right_error**2), i=1, size(patches))]))
          length = max(sum(patches%length()), model%interval())
          of_behaviour = 0.0_wp
          of_behaviour(error_edges) = 0.5_wp*contact
-         of_behaviour(error_stick) = max(norm2([stick, contact*count(held(state))/max(state%contact_nodes(), 1)]), &
+         of_behaviour(error_stick) = max(norm2([stick, contact*count(held(model, state))/max(state%contact_nodes(), 1)]), &
                                          marginal_length(model, state))/length
          if (size(patches) > 0) then
             nodal = maxval(abs(state%fields%shear))

@@ -765,7 +765,7 @@ contains
          character(:), allocatable :: text
 
          associate (model => simulation%contact%model)
-            zones = zones_of(held(simulation%contact%state))
+            zones = zones_of(held(simulation%contact%model, simulation%contact%state))
             ! What ends with the mesh may go on at its other end.
             narrow = zones%last - zones%first < most .and. zones%first > 1 .and. zones%last < model%nodes()
             if (size(zones) < 2 .or. .not. any(narrow)) return

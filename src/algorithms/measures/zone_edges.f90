@@ -198,7 +198,7 @@ contains
          if (model%scene%repeats_beyond(patches(1)%left) .and. model%scene%repeats_beyond(patches(i)%right)) &
             patches(i)%to_first = model%scene%repeat_length()
       end if
-      zones = zones_of(held(state))
+      zones = zones_of(held(model, state))
       do i = 1, size(patches)
          call find_stick_zones(model, state, pack(zones, zones%first >= patches(i)%first .and. zones%last <= patches(i)%last), &
                                patches(i))
@@ -266,7 +266,8 @@ contains
    !> Nodes that stick, and those that are called slipping but rest at their limit (see rests): when a cycle repeats its tractions,
    !> many nodes reach their limit together, and rounding errors or the mesh decide which of them slip, by next to nothing. If no
    !> node is called sticking, the last few at rest before all slide do not count.
-   pure function held(state)
+   pure function held(model, state)
+      type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       integer, parameter :: last_before_sliding = 4
       logical :: held(size(state%status))
@@ -288,29 +289,32 @@ contains
          end do
          associate (first => zones(i)%first, last => zones(i)%last, from => patches(patch)%first, to => patches(patch)%last)
             held(first:last) = held(first:last) .or. &
-                               rests(slipped(first:last), maxval(slipped(from:to), mask=slips(state%status(from:to))))
+                               rests(slipped(first:last), maxval(slipped(from:to), mask=slips(state%status(from:to))), &
+                                     model%width(first:last))
          end associate
       end do
       if (.not. any(holds(state%status)) .and. count(held) <= last_before_sliding) held = .false.
    end function held
 
    !> Whether nodes of a slip zone rest: the slip since their last stick, `slipped`, is next to nothing beside the largest in the
-   !> zone, or less beside that in the patch, `largest`, and of one size at more neighbouring nodes than where it grows with the
-   !> power 3/2 of the distance from a stick zone, or faster. All slips: lengths.
-   pure function rests(slipped, largest)
-      real(wp), intent(in) :: slipped(:), largest
+   !> zone, or all of it even less beside that in the patch, `largest`, and of one size over more neighbouring nodes and a larger part of the zone
+   !> than where it grows with the power 3/2 of the distance from a stick zone, or faster: the power 3/2 has these slips over
+   !> `nothing`^(2/3) of the zone, 5/2 over three equal intervals. All slips, and the `width` of the intervals: lengths.
+   pure function rests(slipped, largest, width)
+      real(wp), intent(in) :: slipped(:), largest, width(:)
       logical :: rests(size(slipped))
-      real(wp), parameter :: nothing = 0.01_wp, nothing_in_patch = 0.001_wp, power = 1.5_wp, alike = 100.0_wp
-      integer, parameter :: fewest = 3
+      real(wp), parameter :: nothing = 0.01_wp, nothing_in_patch = 0.001_wp, alike = 100.0_wp, least_part = 0.1_wp
+      integer, parameter :: fewest = 4
       type(zone_type), allocatable :: runs(:)
       integer :: i
 
       rests = .false.
-      runs = zones_of(slipped <= max(nothing*maxval(slipped), nothing_in_patch*largest))
+      runs = zones_of(slipped <= nothing*maxval(slipped) .or. maxval(slipped) <= nothing_in_patch*largest)
       do i = 1, size(runs)
-         associate (run => rests(runs(i)%first:runs(i)%last), values => slipped(runs(i)%first:runs(i)%last))
-            run = values <= alike*minval(values)
-            if (count(run) < fewest + ceiling(nothing**(1.0_wp/power)*size(slipped))) run = .false.
+         associate (first => runs(i)%first, last => runs(i)%last)
+            rests(first:last) = slipped(first:last) <= alike*minval(slipped(first:last))
+            if (count(rests(first:last)) < fewest .or. &
+                sum(width(first:last), mask=rests(first:last)) < least_part*sum(width)) rests(first:last) = .false.
          end associate
       end do
    end function rests
