@@ -297,9 +297,9 @@ contains
    end function held
 
    !> Whether nodes of a slip zone rest: the slip since their last stick, `slipped`, is next to nothing beside the largest in the
-   !> zone, or all of it even less beside that in the patch, `largest`, and of one size over more neighbouring nodes and a larger part of the zone
-   !> than where it grows with the power 3/2 of the distance from a stick zone, or faster: the power 3/2 has these slips over
-   !> `nothing`^(2/3) of the zone, 5/2 over three equal intervals. All slips, and the `width` of the intervals: lengths.
+   !> zone, or all of it even less beside that in the patch, `largest`, and of one size over more neighbouring nodes and a larger
+   !> part of the zone than where it grows with the power 3/2 of the distance from a stick zone, or faster: the power 3/2 has these
+   !> slips over `nothing`^(2/3) of the zone, 5/2 over three equal intervals. All slips, and the `width` of the intervals: lengths.
    pure function rests(slipped, largest, width)
       real(wp), intent(in) :: slipped(:), largest, width(:)
       logical :: rests(size(slipped))
