@@ -303,7 +303,7 @@ contains
    pure function rests(slipped, largest, width)
       real(wp), intent(in) :: slipped(:), largest, width(:)
       logical :: rests(size(slipped))
-      real(wp), parameter :: nothing = 0.01_wp, nothing_in_patch = 0.001_wp, alike = 100.0_wp, least_part = 0.1_wp
+      real(wp), parameter :: nothing = 0.005_wp, nothing_in_patch = 0.001_wp, alike = 100.0_wp, least_part = 0.1_wp
       integer, parameter :: fewest = 4
       type(zone_type), allocatable :: runs(:)
       integer :: i

@@ -133,8 +133,8 @@ contains
             end if
             call suggest(name, known, '', advice)
             if (any(name == ['p', 'q', 'm'])) advice = '; P, Q and M are normal_force, tangential_force and moment'
-            if (has_word(list, without_unit(name))) &
-               advice = '; write '//without_unit(name)//' without its unit, and numbers in the units of the case'
+            if (has_word(list, trim(without_unit(name)))) &
+               advice = '; write '//trim(without_unit(name))//' without its unit, and numbers in the units of the case'
             if (advice == '') advice = '; columns are'//list//', and '//ignored//', which is ignored'
             call reader%complain(group, 1, 'file', path//': unknown column '''//written(i)%text//''''//advice, error)
             return
@@ -298,9 +298,9 @@ contains
    !> The name of a column without a unit in brackets.
    pure function without_unit(name) result(bare)
       character(*), intent(in) :: name
-      character(:), allocatable :: bare
+      character(len=len(name)) :: bare
 
-      bare = trim(name(:scan(name//'[', '[(') - 1))
+      bare = name(:scan(name//'[', '[(') - 1)
    end function without_unit
 
    !> Error about a column: of the file, or the list of a key.
