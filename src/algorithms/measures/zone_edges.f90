@@ -264,8 +264,8 @@ contains
    end subroutine find_zones_below_limit
 
    !> Nodes that stick, and those that are called slipping but rest at their limit (see rests): when a cycle repeats its tractions,
-   !> many nodes reach their limit together, and rounding errors or the mesh decide which of them slip, by next to nothing. If no
-   !> node is called sticking, the last few at rest before all slide do not count.
+   !> many nodes reach their limit together, and rounding errors or the mesh decide which of them slip, by next to nothing. (Not
+   !> with wear, which adds up such slips.) If no node is called sticking, the last few at rest before all slide do not count.
    pure function held(model, state)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
@@ -280,7 +280,7 @@ contains
          slipped = abs(tangential - shift - state%stuck_slip)
       end associate
       held = holds(state%status) .or. (slips(state%status) .and. slipped <= certified*scale)
-      zones = zones_of(slips(state%status))
+      zones = zones_of(slips(state%status) .and. .not. model%scene%wear%acts())
       patches = zones_of(in_contact(state%status))
       patch = 1
       do i = 1, size(zones)
