@@ -245,12 +245,8 @@ contains
          away = z - self%middle(group)
          if (minval(real(away, wp)**2 + aimag(away)**2) > (distant*self%radius(group))**2) then
             call add_group(self%moments(:, group), self%shear_moments(:, group), self%radius(group), away, integrals)
-         else if (self%halves(group) == 0) then
-            number = number + 1
-            near(:, number) = [self%first(group), self%last(group)]
          else
-            waiting(places + 1:places + 2) = self%halves(group) + [1, 0]
-            places = places + 2
+            call look_closer(self, group, waiting, places, near, number)
          end if
       end do
    end subroutine find_distant
@@ -282,15 +278,27 @@ contains
                total = total*ratio + self%moments(k, group)
             end do
             integral = integral - total/away
-         else if (self%halves(group) == 0) then
-            number = number + 1
-            near(:, number) = [self%first(group), self%last(group)]
          else
-            waiting(places + 1:places + 2) = self%halves(group) + [1, 0]
-            places = places + 2
+            call look_closer(self, group, waiting, places, near, number)
          end if
       end do
    end subroutine find_distant_along
+
+   !> Put the halves of a group that is not distant among the first `places` groups `waiting` to be looked at; or, if it has none,
+   !> its elements among the first `number` ranges `near`.
+   pure subroutine look_closer(self, group, waiting, places, near, number)
+      class(element_tree_type), intent(in) :: self
+      integer, intent(in) :: group
+      integer, intent(inout) :: waiting(:), places, near(:, :), number
+
+      if (self%halves(group) == 0) then
+         number = number + 1
+         near(:, number) = [self%first(group), self%last(group)]
+      else
+         waiting(places + 1:places + 2) = self%halves(group) + [1, 0]
+         places = places + 2
+      end if
+   end subroutine look_closer
 
    !> The highest moment that matters at a `ratio` of the radius to the distance.
    pure integer function highest_moment(ratio)

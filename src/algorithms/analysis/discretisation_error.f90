@@ -2,7 +2,7 @@
 !> (mfv_error_bar).
 module mfv_discretisation_error
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-   use mfv_body, only: body_type
+   use mfv_body, only: body_names, body_type
    use mfv_circle, only: kernel_fourier
    use mfv_compliance, only: block_up, block_wt
    use mfv_contact_model, only: contact_model_type
@@ -10,6 +10,7 @@ module mfv_discretisation_error
    use mfv_corners, only: corner_type, corners_of, find_corner
    use mfv_edge_fields, only: edge_quantities, is_in_cycles
    use mfv_error_bar
+   use mfv_extreme_states, only: find_present_tension
    use mfv_friction, only: friction_coefficient_type
    use mfv_kinds, only: pi, wp
    use mfv_load_extremes, only: candidate_tension, extreme_type, load_extremes_type
@@ -18,7 +19,6 @@ module mfv_discretisation_error
    use mfv_node_status, only: holds, in_contact
    use mfv_observables
    use mfv_observer, only: observer_type, relay_type
-   use mfv_extreme_states, only: find_present_tension
    use mfv_profile_sampling, only: largest_jumps, negligible_pressure
    use mfv_resolution, only: add_unresolved, all_quantities, find_unresolved, is_unresolved, undersampling, unresolved_type
    use mfv_scene, only: scene_type
@@ -114,17 +114,16 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(load_extremes_type), intent(in) :: extremes
       type(error_bar_type), intent(inout) :: bars(:)
-      character(*), parameter :: body(2) = ['lower', 'upper']
       type(largest_type) :: largest
       logical :: available
       integer :: side
 
       call add('largest_pressure', rivals_of(extremes%pressure))
       if (.not. simulation%contact%model%tangential) return
-      do side = 1, size(body)
-         call add('largest_'//body(side)//'_tension', rivals_of(extremes%searched(candidate_tension(side))))
+      do side = 1, size(body_names)
+         call add('largest_'//body_names(side)//'_tension', rivals_of(extremes%searched(candidate_tension(side))))
          call find_present_tension(simulation, extremes, side == 2, largest, available)
-         if (available) call add(body(side)//'_tension', largest)
+         if (available) call add(body_names(side)//'_tension', largest)
       end do
 
    contains
@@ -701,7 +700,7 @@ contains
       real(wp) :: of_behaviour(0:error_place)
       type(patch_type), allocatable :: patches(:)
       real(wp) :: contact, stick, length, largest, nodal, at_jumps, part(2)
-      integer :: i, points
+      integer :: i, points, nodes_held
 
       associate (model => simulation%contact%model)
          call find_patches(model, state, patches)
@@ -709,12 +708,13 @@ contains
          ! Errors of the two edges of one patch add up; those of several patches are independent.
          contact = sqrt(2.0_wp*sum(patches%left_error**2 + patches%right_error**2))
          stick = model%interval()
-         if (any(held(model, state))) &
+         nodes_held = count(held(model, state))
+         if (nodes_held > 0) &
             stick = sqrt(2.0_wp*sum([(sum(patches(i)%stick%left_error**2 + patches(i)%stick%right_error**2), i=1, size(patches))]))
          length = max(sum(patches%length()), model%interval())
          of_behaviour = 0.0_wp
          of_behaviour(error_edges) = 0.5_wp*contact
-         of_behaviour(error_stick) = max(norm2([stick, contact*count(held(model, state))/max(state%contact_nodes(), 1)]), &
+         of_behaviour(error_stick) = max(norm2([stick, contact*nodes_held/max(state%contact_nodes(), 1)]), &
                                          marginal_length(model, state))/length
          if (size(patches) > 0) then
             nodal = maxval(abs(state%fields%shear))
