@@ -194,7 +194,7 @@ def judge(problem: Problem, base: mfv.Result, truth: Truth) -> dict[str, Verdict
 
 def _but_for_narrow_zones(verdict: Verdict, name: str, base: mfv.Result, fine: mfv.Result) -> Verdict:
     """The verdict of a finding if zones and gaps that the mesh of the base does not resolve explain it: a number without them is right,
-    another one up to that of all zones is not known, nor is an edge that is that of one of the wide zones."""
+    another one up to that of all zones is not known, nor is an edge that is that of one of the wide zones (of any if none is wide)."""
     statuses = next((found for names, found in _ZONES.items() if re.fullmatch(names, name)), None)
     if verdict.word != "finding" or statuses is None:
         return verdict
@@ -203,7 +203,7 @@ def _but_for_narrow_zones(verdict: Verdict, name: str, base: mfv.Result, fine: m
     if len(every) == len(wide):
         return verdict
     if re.fullmatch(rf"{_STICK_POSITION}|.*_slip_zone", name):
-        ends = [first if "left" in name else last - 1 for first, last in wide]
+        ends = [first if "left" in name else last - 1 for first, last in wide or every]
         places = [fine.mesh.x[end] for end in ends]
         if name.endswith("_slip_zone"):
             edge = fine.observables.contact_centre + (0.5 if "right" in name else -0.5) * fine.observables.contact_length

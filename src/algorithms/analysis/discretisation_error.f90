@@ -12,6 +12,7 @@ module mfv_discretisation_error
    use mfv_error_bar
    use mfv_extreme_states, only: find_present_tension
    use mfv_friction, only: friction_coefficient_type
+   use mfv_interior, only: interior_type
    use mfv_kinds, only: pi, wp
    use mfv_load_extremes, only: candidate_tension, extreme_type, load_extremes_type
    use mfv_motions, only: bulk_motions, control_keep, motion_approach, motion_shift
@@ -25,6 +26,7 @@ module mfv_discretisation_error
    use mfv_simulation, only: history_none, mark_loading, mark_return, mark_reversal, new_simulation, simulation_type, &
                              states_steps
    use mfv_slip_zones, only: contact_interval, is_narrow_stick_zone, largest_resolved_error, slip_record_type
+   use mfv_state_interior, only: state_interior
    use mfv_status, only: MFV_COMPLETE, MFV_INPUT_ERROR, status_outcome
    use mfv_stress_search, only: largest_type
    use mfv_strings, only: to_text
@@ -571,6 +573,9 @@ contains
             where (observables%error == error_local .and. index(observables%name, '_tension') > 0) &
                allowances = allowances + fineness*abs(values)
          end if
+         call add_jumps(simulation%contact%state, '')
+         call add_jumps(simulation%contact%state, 'largest_')
+         if (simulation%cycle_count > 0) call add_jumps(simulation%padded(simulation%marks(mark_reversal)), 'largest_')
          ! What slips within the outermost intervals while friction acts against coupling stays in the shift.
          if (pressing_shears(model) .and. stick_zones_can_grow(model)) &
             where (observables%name == 'shift') allowances = allowances + maxval(hidden_slip())
@@ -611,6 +616,19 @@ contains
                 (observables%name == 'smallest_stick_ratio' .or. observables%name == 'largest_stick_ratio')) &
             allowances = max(allowances, of_behaviour(observables%error))
       end subroutine take_turning_point
+
+      !> What a tension at a jump of the shear in a state may exceed the largest tensions, whose names begin with `prefix`, by.
+      subroutine add_jumps(state, prefix)
+         type(contact_state_type), intent(in) :: state
+         character(*), intent(in) :: prefix
+         integer :: side, place
+
+         do side = 1, size(body_names)
+            place = observable_place(prefix//body_names(side)//'_tension')
+            if (ieee_is_nan(values(place))) cycle
+            allowances(place) = max(allowances(place), tension_at_jump(simulation%contact%model, state, side == 2) - values(place))
+         end do
+      end subroutine add_jumps
 
       !> A stick zone of few intervals before the end, where its edges are not looked at, is known to one of them; without a node to
       !> two. `interval`: over the length of the contact. None where all nodes slide in the end, or at the ends of cycles.
@@ -677,6 +695,36 @@ contains
          end associate
       end subroutine add_hidden
    end function interval_allowances
+
+   !> Tension along the surface of a body, the `upper` or the lower one, that may be where the shear rises most within few
+   !> intervals inside the contact, force/length^2: a rise by d over a length w adds 2/pi d log(1/w) there (Johnson, Contact
+   !> mechanics, 1985, eq. 2.25a, integrated), 2/pi d log(2) more if it is half as long. -huge without a rise.
+   real(wp) function tension_at_jump(model, state, upper) result(tension)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      logical, intent(in) :: upper
+      integer, parameter :: reach = 3
+      type(interior_type) :: interior
+      logical :: available
+      real(wp) :: rise, largest
+      integer :: i, first
+
+      tension = -huge(tension)
+      if (.not. model%tangential) return
+      largest = certified*maxval(abs(state%fields%shear))
+      first = 0
+      do i = 2, model%nodes() - reach - 1
+         if (.not. all(in_contact(state%status(i - 1:i + reach + 1)))) cycle
+         rise = merge(-1, 1, upper)*(state%fields%shear(i + reach) - state%fields%shear(i))
+         if (.not. rise > largest) cycle
+         largest = rise
+         first = i
+      end do
+      if (first == 0) return
+      call state_interior(model, state, upper, interior, available)
+      if (.not. available) return
+      tension = maxval([(interior%surface_stress(model%arc(i)), i=first, first + reach)]) + 2.0_wp/pi*log(2.0_wp)*largest
+   end function tension_at_jump
 
    !> Distance of the farthest maximum of the pressure from `place`, length, that may be the largest between nodes: it rises by no
    !> more than it does from the steeper neighbour. Arguments of shape (nodes).

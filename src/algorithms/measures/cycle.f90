@@ -226,7 +226,8 @@ contains
 
       is_sheared = self%shift_amplitude() > certified*max(abs(self%lowest_motion(motion_shift)), &
                                                           abs(self%highest_motion(motion_shift))) .and. &
-                   self%force_amplitude() > certified*self%highest_force(motion_approach) .and. &
+                   self%force_amplitude() > certified*max(abs(self%lowest_force(motion_approach)), &
+                                                          abs(self%highest_force(motion_approach))) .and. &
                    self%force_amplitude() < self%return%largest_stiffness*self%shift_amplitude()
    end function is_sheared
 
