@@ -861,7 +861,8 @@ contains
       !> the stick zone; worn where the outermost node is, since the pressure vanishes otherwise there; cornered over the number of
       !> nodes of the patch: around a corner in contact the pressure has an error of the first order, which moves the edges in
       !> second order; layered times the squared interval over the thickness of a layer, within which the pressure vanishes as a
-      !> root, up to layered_at_most; stuck of stick zones where the pressure depends on the shear.
+      !> root, up to layered_at_most; stuck of stick zones, and of the contact beside an outermost node that sticks, where the
+      !> pressure depends on the shear.
       real(wp), parameter :: coupled = 0.02_wp, receded = 0.5_wp, worn = 0.5_wp, grown = 0.2_wp, grown_to_end = 0.25_wp, &
                              cornered = 0.2_wp, narrow = 0.5_wp, layered = 0.2_wp, layered_at_most = 0.5_wp, stuck = 0.08_wp
       integer, parameter :: fewest_alike = 4
@@ -877,11 +878,9 @@ contains
       do i = 1, size(patches)
          associate (patch => patches(i), width => model%width)
             if (depends_on_friction .and. .not. patch%left_ends) &
-               patch%left_error = max(patch%left_error, width(patch%first)*merge(receded, coupled, has_receded .and. &
-                                                                                slipping_run(state, patch%first, 1) < fewest_alike))
+               patch%left_error = max(patch%left_error, width(patch%first)*of_friction(slipping_run(state, patch%first, 1)))
             if (depends_on_friction .and. .not. patch%right_ends) &
-               patch%right_error = max(patch%right_error, width(patch%last)*merge(receded, coupled, has_receded .and. &
-                                                                                slipping_run(state, patch%last, -1) < fewest_alike))
+               patch%right_error = max(patch%right_error, width(patch%last)*of_friction(slipping_run(state, patch%last, -1)))
             least = min(layered*(maxval(width([patch%first, patch%last]))/thickness)**2, layered_at_most)
             if (any(corners%place > patch%left .and. corners%place < patch%right)) &
                least = max(least, cornered/(patch%last - patch%first + 1))
@@ -909,6 +908,14 @@ contains
       end do
 
    contains
+
+      !> In intervals, where the pressure depends on the shear: an edge beside `slipping` nodes that slip alike.
+      pure real(wp) function of_friction(slipping)
+         integer, intent(in) :: slipping
+
+         of_friction = merge(stuck, coupled, slipping == 0)
+         if (has_receded .and. slipping < fewest_alike) of_friction = receded
+      end function of_friction
 
       pure logical function is_worn(node)
          integer, intent(in) :: node

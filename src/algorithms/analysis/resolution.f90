@@ -758,25 +758,36 @@ contains
          end associate
       end subroutine check_jumps
 
-      !> Of several stick zones those with one or two nodes may not be there on another mesh.
+      !> Of several stick zones those with one or two nodes, and slip zones between them with so few, may not be there on another mesh.
       subroutine check_narrow_zones()
          integer, parameter :: most = 2
-         logical, allocatable :: narrow(:)
+         logical, allocatable :: narrow(:), touching(:)
          character(:), allocatable :: text
 
          associate (model => simulation%contact%model)
             zones = zones_of(held(simulation%contact%model, simulation%contact%state))
             ! What ends with the mesh may go on at its other end.
             narrow = zones%last - zones%first < most .and. zones%first > 1 .and. zones%last < model%nodes()
-            if (size(zones) < 2 .or. .not. any(narrow)) return
-            names = 'stick_zones'
-            if (narrow(1)) names = names//' stick_left left_slip_zone'
-            if (narrow(size(zones))) names = names//' stick_right right_slip_zone'
-            text = to_text(count(narrow))//' of '//to_text(size(zones))//' stick zones '// &
-                   trim(merge('has ', 'have', count(narrow) == 1))//' only one or two nodes'
-            if (count(narrow) > 1) text = text//', the first'
-            text = text//' near x = '//to_text(model%x(zones(findloc(narrow, .true., dim=1))%first), 4)
-            call add_unresolved(unresolved, names, text, 'use more nodes')
+            if (size(zones) < 2) return
+            if (any(narrow)) then
+               names = 'stick_zones'
+               if (narrow(1)) names = names//' stick_left left_slip_zone'
+               if (narrow(size(zones))) names = names//' stick_right right_slip_zone'
+               text = to_text(count(narrow))//' of '//to_text(size(zones))//' stick zones '// &
+                      trim(merge('has ', 'have', count(narrow) == 1))//' only one or two nodes'
+               if (count(narrow) > 1) text = text//', the first'
+               text = text//' near x = '//to_text(model%x(zones(findloc(narrow, .true., dim=1))%first), 4)
+               call add_unresolved(unresolved, names, text, 'use more nodes')
+               return
+            end if
+            touching = in_contact(simulation%contact%state%status)
+            do i = 2, size(zones)
+               if (zones(i)%first - zones(i - 1)%last > most + 1) cycle
+               if (.not. all(touching(zones(i - 1)%last:zones(i)%first))) cycle
+               call add_unresolved(unresolved, 'stick_zones', 'the slip zone near x = '//to_text(model%x(zones(i)%first), 4)// &
+                                   ' between stick zones has only one or two nodes', 'use more nodes')
+               return
+            end do
          end associate
       end subroutine check_narrow_zones
 
