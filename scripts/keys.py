@@ -2,9 +2,9 @@
 
     build/venv/bin/python scripts/keys.py [--check] build/release/bin
 
-writes them into docs/namelist.md (all that follows "## All groups and keys") and python/mfv/templates/keys.md, and the keys of the
-classes of python/mfv/scene.py, between "# keys of" and "# end of keys". With --check it changes nothing, names files that are out of
-date, and exits with 1 if there are any.
+writes them into docs/namelist.md (all that follows "## All groups and keys"; keys that are as in an earlier group in one line) and
+python/mfv/templates/keys.md, and the keys of the classes of python/mfv/scene.py, between "# keys of" and "# end of keys". With --check
+it changes nothing, names files that are out of date, and exits with 1 if there are any.
 """
 
 from __future__ import annotations
@@ -58,6 +58,28 @@ def field(key: str, kind: str, end: str) -> str:
     return f"    {key}: Literal[\n        {choices}\n    ]{end}\n"
 
 
+def without_repeats(printed: str) -> str:
+    """The tables with a line `As in &body: ...` in place of the rows that are those of an earlier group, or that say so."""
+    earlier: dict[str, str] = {}
+    parts = []
+    for table in re.split(r"(?=^### &)", printed, flags=re.MULTILINE):
+        group, kept, repeated = "", [], {}
+        for line in table.rstrip("\n").split("\n"):
+            if line.startswith("### &"):
+                group = line.split()[1]
+            key = re.match(r"\| (`\w+`) \|", line)
+            said = re.search(r"\| as in (&\w+) \|$", line)
+            first = said[1] if said else earlier.get(line, group)
+            if key and first != group:
+                repeated.setdefault(first, []).append(key[1])
+            else:
+                kept.append(line)
+                earlier.setdefault(line, group)
+        kept += [f"\nAs in {first}: {', '.join(keys)}." for first, keys in repeated.items()]
+        parts.append("\n".join(kept))
+    return "\n\n".join(parts).lstrip("\n") + "\n"
+
+
 def sorted_keys(keys: list[tuple[str, str, bool]]) -> list[tuple[str, str, bool]]:
     """Keys that are always needed first: before Python 3.10 fields of a dataclass without a default precede the others."""
     return sorted(keys, key=lambda key: not key[2])
@@ -82,7 +104,7 @@ def main() -> int:
     text, heading, _ = PAGE.read_text(encoding="utf-8").partition(HEADING)
     if not heading:
         raise SystemExit(f"{PAGE.relative_to(ROOT)} has no heading '{HEADING.strip()}'")
-    made = {PAGE: text + heading + keys, TEMPLATE: keys, SCENE: with_keys(SCENE.read_text(encoding="utf-8"), keys)}
+    made = {PAGE: text + heading + without_repeats(keys), TEMPLATE: keys, SCENE: with_keys(SCENE.read_text(encoding="utf-8"), keys)}
     outdated = {path: new for path, new in made.items() if path.read_text(encoding="utf-8") != new}
     for path, new in outdated.items():
         if given.check:

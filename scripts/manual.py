@@ -29,7 +29,7 @@ TEXTS = {
     "mfv_case": ("mfv_run", "docs/namelist.md", "text of a case of frictional contact, with every key"),
 }
 # Day of the pages: the one on which programs or keys changed last.
-DAY = "2026-11-25"
+DAY = "2026-11-28"
 # A term and its explanation in a list of a help text.
 TERM = r"  (\S.*?) {2,}(\S.*)"
 

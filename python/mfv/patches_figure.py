@@ -135,10 +135,10 @@ def _frame(result: Result, patches: list[tuple[float, float]], chosen: int, axes
                 str(number), (0.5 * (first + last), 1.0), xycoords=("data", "axes fraction"), xytext=(0, -3),
                 textcoords="offset points", ha="center", va="top", fontsize=8,
             )  # fmt: skip
-    _limit_gap(result, axes[-1, 1], shown)
+    _limit_gap(axes[-1, 1], shown)
 
 
-def _limit_gap(result: Result, ax: Axes, shown: tuple[float, float]) -> None:
+def _limit_gap(ax: Axes, shown: tuple[float, float]) -> None:
     """The gap of the narrow column over what it shows."""
     x, values = ax.lines[0].get_xdata(), ax.lines[0].get_ydata()
     here = np.asarray(values)[(np.asarray(x) >= shown[0]) & (np.asarray(x) <= shown[1])]

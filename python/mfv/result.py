@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import os
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -11,6 +10,7 @@ import numpy as np
 
 from . import _html
 from ._packages import require
+from ._suggestions import suggestion
 from .errors import MfvError, NotAResult
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ class Group(Mapping[str, Values]):
         if name not in self._fields and name in self._along():
             return self._coordinates[name]
         if name not in self._fields:
-            raise NoQuantity(None, f"no quantity '{name}'{_known(name, list(self))}")
+            raise NoQuantity(None, f"no quantity '{name}'{_known(name, self)}")
         return self._fields[name]
 
     def __getitem__(self, name: str) -> Values:
@@ -96,7 +96,7 @@ class Group(Mapping[str, Values]):
             raise AttributeError(name)
         if name in self:
             return self[name]
-        raise NoAttribute(None, f"no quantity '{name}'{_known(name, list(self))}")
+        raise NoAttribute(None, f"no quantity '{name}'{_known(name, self)}")
 
     def __setattr__(self, name: str, value: object) -> None:
         if not name.startswith("_") and name in self:
@@ -269,12 +269,9 @@ class Result:
         return f"{self.summary[name]:.6g}" + ("" if unit == "1" else f" {unit}")
 
 
-def _known(name: str, names: list[str]) -> str:
-    """The end of a message about an unknown name: the nearest of many names, or all."""
-    many = 40
-    near = [*difflib.get_close_matches(name, names, n=3), *names][:3] if len(names) > many else names
-    others = f" and {len(names) - len(near)} others" if len(names) > len(near) else ""
-    return f"; there are {', '.join(near) or 'none'}{others}"
+def _known(name: str, group: Group) -> str:
+    """The end of a message about an unknown quantity of a group."""
+    return suggestion(name, group) if group else ": the group is empty"
 
 
 def kept(result: Result) -> str:

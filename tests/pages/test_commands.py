@@ -406,7 +406,7 @@ def test_comments_of_templates_are_those_of_the_catalogue() -> None:
     printed = subprocess.run([MFV_RUN, "--keys"], capture_output=True, text=True, check=True).stdout
     assert (Path(template.__file__).parent / "templates/keys.md").read_text() == printed, "mfv_run --keys > keys.md"
     text = template.text("study")
-    assert "   ! number of equal intervals; nodes are their centres; without half_width" in template.text("cylinder")
+    assert "   ! number of equal intervals; nodes are their centres; more by default" in template.text("cylinder")
     assert "(a number above 0, in length)\n" in template.text("matrix") and "('linear' or 'log', 'linear' by default)\n" in text
     for key in ("key", "values", "factor"):  # a comment above the first one alone
         place = text.index(f"   {key} = ")

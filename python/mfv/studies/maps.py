@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 
 #: Regimes of a point. FAILED: the case ended early for another reason than gross sliding or separation.
 STICK, PARTIAL, SLIDING, OPEN, FAILED = "stick", "partial slip", "gross sliding", "open", "failed"
-REGIMES = (STICK, PARTIAL, SLIDING, OPEN, FAILED)
 #: A boundary that is independent of the others.
 YIELDING = "yielding"
 

@@ -641,6 +641,15 @@ contains
       end associate
    end function can_refine
 
+   !> What resolves what is narrow at an edge.
+   function finer_mesh(simulation) result(remedy)
+      type(simulation_type), intent(in) :: simulation
+      character(len=44) :: remedy
+
+      remedy = 'use more nodes'
+      if (can_refine(simulation)) remedy = "use refine='edges' in &mesh, or more nodes"
+   end function finer_mesh
+
    !> A largest shear at the outermost node of a patch: it lies in the last interval, where the pressure vanishes and limits it. It
    !> is resolved if it hardly changes from node to node. Nor is a largest shear resolved within few nodes of an edge that sticks
    !> now, if slip zones had too few nodes, nor one near a corner of a flat punch, where it has no limit; there its error bar
@@ -660,8 +669,7 @@ contains
          zones = zones_of(in_contact(state%status))
          zones = pack(zones, zones%first <= node .and. zones%last >= node .and. abs(state%fields%shear(node)) > 0.0_wp)
          if (size(zones) == 0) return
-         remedy = 'use more nodes'
-         if (can_refine(simulation)) remedy = "use refine='edges' in &mesh, or more nodes"
+         remedy = trim(finer_mesh(simulation))
          do side = -1, 1, 2
             distance = merge(node - zones(1)%first, zones(1)%last - node, side < 0)
             if (distance >= resolved_nodes) cycle
@@ -777,7 +785,11 @@ contains
                       trim(merge('has ', 'have', count(narrow) == 1))//' only one or two nodes'
                if (count(narrow) > 1) text = text//', the first'
                text = text//' near x = '//to_text(model%x(zones(findloc(narrow, .true., dim=1))%first), 4)
-               call add_unresolved(unresolved, names, text, 'use more nodes')
+               if (model%scene%wear%acts()) then
+                  call add_unresolved(unresolved, names, text, 'beside a worn edge they depend on the mesh')
+               else
+                  call add_unresolved(unresolved, names, text, 'use more nodes')
+               end if
                return
             end if
             touching = in_contact(simulation%contact%state%status)
@@ -873,6 +885,7 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
       real(wp), parameter :: most = 0.5_wp, sharp = 0.05_wp
+      character(:), allocatable :: remedy
 
       associate (model => simulation%contact%model, state => simulation%contact%state)
          if (.not. model%scene%wear%acts() .or. simulation%cycle_count == 0) return
@@ -884,11 +897,15 @@ contains
             call add_unresolved(unresolved, 'peak_pressure peak_shear stick_ratio extremes dissipation cycle_dissipation '// &
                                 'worn_area wear_depth left_corner_intensity right_corner_intensity'//tensions(simulation), &
                                 'no node slips in a cycle: what slips, and wears, at the edges is narrower than the mesh', &
-                                'use more nodes')
-         if (pressure_at_worn_kink(model, state) > sharp*maxval(state%fields%pressure)) &
-            call add_unresolved(unresolved, 'peak_pressure peak_shear stick_ratio_reversal stick_ratio_return extremes'// &
-                                tensions(simulation), 'the worn part of the surface ends within few intervals where the '// &
-                                'pressure is large', 'use more nodes')
+                                trim(finer_mesh(simulation)))
+         if (.not. pressure_at_worn_kink(model, state) > sharp*maxval(state%fields%pressure)) return
+         remedy = 'use more nodes'
+         ! A scar is under a nearly uniform pressure up to its ends (docs/theory.md, wear).
+         if (simulation%cycles(simulation%cycle_count)%permanent_stick_length() <= 0.0_wp) &
+            remedy = 'in gross slip it does on any mesh; worn_area, wear_depth and contact_half_width are resolved'
+         call add_unresolved(unresolved, 'peak_pressure peak_shear stick_ratio_reversal stick_ratio_return extremes'// &
+                             tensions(simulation), 'the worn part of the surface ends within few intervals where the '// &
+                             'pressure is large', remedy)
       end associate
    end subroutine check_worn_shape
 

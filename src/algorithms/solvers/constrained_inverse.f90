@@ -35,7 +35,7 @@ module mfv_constrained_inverse
       procedure :: clear
       procedure :: add_unknowns
       procedure :: remove_unknown
-      procedure :: constrain
+      procedure :: add_constraint
       procedure :: release
       procedure :: release_all
       procedure :: postpone
@@ -133,8 +133,8 @@ contains
       end do
    end function functional
 
-   !> Append a constraint.
-   subroutine constrain(self, slot, partner, slope, stiffness)
+   !> Append a constraint: see constraint_type.
+   subroutine add_constraint(self, slot, partner, slope, stiffness)
       class(constrained_inverse_type), intent(inout) :: self
       integer, intent(in) :: slot, partner
       real(wp), intent(in) :: slope, stiffness
@@ -151,7 +151,7 @@ contains
       row = self%columns(slot, :k)
       if (partner > 0) row = row - slope*self%columns(partner, :k)
       call border_small(self, row)
-   end subroutine constrain
+   end subroutine add_constraint
 
    !> Update the inverse of S for a new last row and column.
    subroutine border_small(self, row)

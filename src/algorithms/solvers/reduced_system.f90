@@ -473,7 +473,7 @@ contains
             stiffness = constraints%row(i)%stiffness*self%length/model%compliance%modulus*model%width(i)/model%interval()
             associate (c => self%constraint_of(i, a_shear), slope => constraints%row(i)%slope)
                if (c == 0) then
-                  call system%constrain(self%place(i, a_shear), partner, slope, stiffness)
+                  call system%add_constraint(self%place(i, a_shear), partner, slope, stiffness)
                   c = system%constraints
                   ! Uncoupled, the slope multiplies the known pressure.
                else if ((partner > 0 .and. abs(system%constraint(c)%slope - slope) > 0.0_wp) .or. &
@@ -487,7 +487,7 @@ contains
          if (self%place(i, a_motion) == 0 .or. self%constraint_of(i, a_motion) > 0) cycle
          if (constraints%load(i)%control == control_force) cycle
          associate (system => self%subsystem(subsystem_of(self, a_motion, i))%system)
-            call system%constrain(self%place(i, a_motion), 0, 0.0_wp, 0.0_wp)
+            call system%add_constraint(self%place(i, a_motion), 0, 0.0_wp, 0.0_wp)
             self%constraint_of(i, a_motion) = system%constraints
          end associate
       end do

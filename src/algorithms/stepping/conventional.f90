@@ -96,7 +96,7 @@ contains
       allocate (tried(n, 0))
       expected = path%state%fields
       do repairs = 1, path%model%scene%method%most_iterations
-         call constrain(path, segment, done, expected, constraints, error)
+         call find_trial_constraints(path, segment, done, expected, constraints, error)
          if (allocated(error)) return
          call path%system%solve(path%model, constraints, path%state%fields, response, singular)
          if (singular .and. path%system%gave_up) then
@@ -180,7 +180,7 @@ contains
    !> The constraints at the fraction `done` of the segment, with the statuses of `path` (trial ones; its fields and memory are
    !> those of the last load step) and friction lines for the fields `expected`. (The rates of the loads are not used.)
    !> Errors MFV_GROSS_SLIDING, MFV_SEPARATED: nothing balances the tangential force.
-   subroutine constrain(path, segment, done, expected, constraints, error)
+   subroutine find_trial_constraints(path, segment, done, expected, constraints, error)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: done
@@ -204,7 +204,7 @@ contains
          call path%end_here(MFV_SEPARATED, 'no node is in contact to balance the tangential force', error)
       end if
       constraints%load(motion_shift) = load_type(control_displacement, path%state%fields%motion(motion_shift), 0.0_wp)
-   end subroutine constrain
+   end subroutine find_trial_constraints
 
    !> The worst violation of the first violated type, and its repair.
    function worst_violation(path, trial) result(repair)

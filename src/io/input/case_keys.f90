@@ -62,15 +62,15 @@ contains
       type(catalogue_type), intent(inout) :: keys
 
       call keys%add('body', 'shape', kind_choice, 'needed; first body below, second body above', choices=shape_names//' edge')
-      call keys%add('body', 'rigid', kind_logical, 'whether the body is rigid; at least one body must be elastic; a '// &
-                    'flat_punch must be rigid', &
+      call keys%add('body', 'rigid', kind_logical, 'whether the body is rigid; one at least must be elastic, and a '// &
+                    'flat_punch rigid', &
                     default='.false.')
       call add_isotropic_keys(keys, 'body', 'an elastic body')
-      call keys%add('body', 'yield_strength', kind_real, 'elastic body: a warning is given when the largest von Mises stress '// &
-                    'exceeds it', unit='force/length^2', above=0.0_wp)
+      call keys%add('body', 'yield_strength', kind_real, 'elastic body: the largest von Mises stress above which there is '// &
+                    'a warning', unit='force/length^2', above=0.0_wp)
       call keys%add('body', 'datum', kind_real, 'elastic body: distance from the contact at which displacements are measured; '// &
                     'if omitted: the radius of a disk or hole; else the radius, half-width or extent of the other body; else '// &
-                    'the half-width of the contact, see below', unit='length', above=0.0_wp)
+                    'the half-width of the contact', unit='length', above=0.0_wp)
       call keys%add('body', 'radius', kind_real, 'disk, hole: radius, needed', unit='length', above=0.0_wp)
       call keys%add('body', 'half_width', kind_real, 'flat_punch: half its width; rounded_punch: half the width of its flat '// &
                     'face; needed', unit='length', above=0.0_wp)
@@ -100,14 +100,13 @@ contains
                     "interval of the whole circle; at least half the number of these intervals", default='', lower=2.0_wp, &
                     upper=most_harmonics)
       call keys%add('body', 'file', kind_text, 'profile: text file with two columns, x and height, or one, heights; matrix: '// &
-                    'HDF5 file; see below; path relative to the case file; needed')
+                    'HDF5 file; needed')
       call keys%add('body', 'interpolation', kind_choice, 'profile: straight lines between its points, with corners, or a '// &
                     'smooth curve without overshoot', default='linear', choices='linear monotone_cubic')
       call keys%add('body', 'position_scale', kind_real, 'profile: x of the file is multiplied by it; with heights only: the '// &
                     'distance between them, needed', above=0.0_wp, default='1')
-      call keys%add('body', 'height_scale', kind_real, 'profile: heights of the file are multiplied by it; a height is the '// &
-                    'distance by which the surface recedes from the other body; negative if the file has heights towards '// &
-                    'it', default='1')
+      call keys%add('body', 'height_scale', kind_real, 'profile: heights of the file are multiplied by it; negative if they '// &
+                    'are towards the other body', default='1')
       call keys%add('body', 'level', kind_choice, 'profile: subtracted from its heights: nothing, their mean, or their '// &
                     'least-squares line or parabola', default='none', choices='none mean line parabola')
       call keys%add('body', 'centred', kind_logical, 'profile: whether the middle of its positions is moved to x = 0', &
@@ -123,8 +122,8 @@ contains
       call keys%add('layer', 'thickness', kind_real, 'needed', unit='length', above=0.0_wp)
       call keys%add('layer', 'elasticity', kind_choice, 'the kind of its material', default='isotropic', choices=layer_names)
       call add_isotropic_keys(keys, 'layer', 'an isotropic layer')
-      call keys%add('layer', 'yield_strength', kind_real, 'a warning is given when the largest von Mises stress in the layer '// &
-                    'exceeds it', unit='force/length^2', above=0.0_wp)
+      call keys%add('layer', 'yield_strength', kind_real, 'the largest von Mises stress in the layer above which there is a '// &
+                    'warning', unit='force/length^2', above=0.0_wp)
       call add_anisotropic_keys(keys, 'layer')
    end subroutine add_layer_keys
 
@@ -150,12 +149,11 @@ contains
                     unit='force/length^2', above=0.0_wp)
       call keys%add(group, 'youngs_modulus_3', kind_real, 'orthotropic: modulus out of the plane'//strain, &
                     unit='force/length^2', above=0.0_wp)
-      call keys%add(group, 'poisson_ratio_12', kind_real, 'orthotropic: contraction along axis 2 over extension along axis 1, '// &
-                    'under a stress along axis 1, needed')
-      call keys%add(group, 'poisson_ratio_13', kind_real, 'orthotropic: contraction along axis 3 over extension along '// &
-                    'axis 1, under a stress along axis 1'//strain)
-      call keys%add(group, 'poisson_ratio_23', kind_real, 'orthotropic: contraction along axis 3 over extension along '// &
-                    'axis 2, under a stress along axis 2'//strain)
+      call keys%add(group, 'poisson_ratio_12', kind_real, 'orthotropic: contraction along axis 2 over extension under a stress '// &
+                    'along axis 1, needed')
+      call keys%add(group, 'poisson_ratio_13', kind_real, 'orthotropic: contraction along axis 3, likewise'//strain)
+      call keys%add(group, 'poisson_ratio_23', kind_real, 'orthotropic: contraction along axis 3 under a stress along axis 2, '// &
+                    'likewise'//strain)
       call keys%add(group, 'shear_modulus_12', kind_real, 'orthotropic: shear modulus in the plane, needed', &
                     unit='force/length^2', above=0.0_wp)
       call keys%add(group, 'compliances', kind_real, 'anisotropic: six or, in plane strain, ten numbers, needed: S11, '// &
@@ -169,30 +167,27 @@ contains
    subroutine add_mesh_keys(keys)
       type(catalogue_type), intent(inout) :: keys
 
-      call keys%add('mesh', 'nodes', kind_integer, 'number of equal intervals; nodes are their centres; without '// &
-                    'half_width, half_angle, period and ends more by default for a small accuracy in &solver; around a neat '// &
-                    'fit 360 by default', default='101', &
+      call keys%add('mesh', 'nodes', kind_integer, 'number of equal intervals; nodes are their centres; more by '// &
+                    'default for a small accuracy in &solver, 360 around a neat fit', default='101', &
                     lower=1.0_wp, upper=most_nodes)
       call keys%add('mesh', 'half_width', kind_real, 'the intervals cover [-half_width, half_width] along the surface; if '// &
                     'omitted: chosen from an estimate of the contact, and extended when the contact reaches its '// &
                     'ends', unit='length', &
                     above=0.0_wp)
       call keys%add('mesh', 'half_angle', kind_real, 'instead of half_width if a body is an elastic disk or hole: the '// &
-                    'intervals cover this angle on either side; 180: the whole circle, of which only the nodes near the '// &
-                    'contact are computed', unit='degrees', above=0.0_wp, upper=180.0_wp)
+                   'intervals cover this angle on either side; 180: the whole circle', unit='degrees', above=0.0_wp, upper=180.0_wp)
       call keys%add('mesh', 'period', kind_real, 'instead of half_width: surfaces, loads and mesh repeat after this length '// &
                     'along the surface; forces are those of one period', unit='length', above=0.0_wp)
       call keys%add('mesh', 'refine', kind_choice, 'edges: unequal intervals, small at the edges of contact and stick zones at '// &
-                    'the ends of the steps, which are found on coarser meshes; without nodes their number follows from '// &
-                    'accuracy in &solver', default='none', choices='none edges')
+                    'the ends of the steps', default='none', choices='none edges')
       call keys%add('mesh', 'ends', kind_real, 'instead of nodes, half_width and half_angle: the ends of all intervals, '// &
                     'which may be unequal, from left to right along the surface', unit='length')
       keys%keys(keys%size)%is_list = .true.
       call keys%add('mesh', 'gap', kind_choice, 'gap of disks and holes: exact circles, or the parabolas x^2/(2R) of Hertz', &
                     default='exact', choices='exact parabolic')
       call keys%add('mesh', 'normals', kind_choice, 'vertical: pressure, gap and approach are vertical at every node; radial: '// &
-                    'along the radius, for a disk in a hole and contacts of any angle; positions along the surface and '// &
-                    'tractions are then those of the hole', default='vertical', choices='vertical radial')
+                    'along the radius, for a disk in a hole; positions along the surface and tractions are then those of the '// &
+                    'hole', default='vertical', choices='vertical radial')
    end subroutine add_mesh_keys
 
    subroutine add_friction_keys(keys)
@@ -204,8 +199,7 @@ contains
       call add_coefficient_key(keys, 'mu_kinetic', 'static_kinetic, weakening: coefficient of a slipping node, after '// &
                                'weakening; not above mu_static')
       call keys%add('friction', 'mu_file', kind_text, 'instead of the coefficients: text file with the columns x and mu, or '// &
-                    'x, mu_static and mu_kinetic; linear between its lines, constant beyond them; path relative to the '// &
-                    'case file')
+                    'x, mu_static and mu_kinetic; linear between its lines, constant beyond them')
       call keys%add('friction', 'weakening_distance', kind_real, 'weakening: slip over which the coefficient decreases from '// &
                     'mu_static to mu_kinetic, needed', unit='length', above=0.0_wp)
       call keys%add('friction', 'stiffness', kind_real, 'dahl: stiffness sigma of the bristles, traction over slip, needed', &
@@ -223,11 +217,10 @@ contains
                     unit='length^2/force', above=0.0_wp)
       call keys%add('wear', 'tolerance', kind_real, 'largest error of worn area and depth against a computation of every '// &
                     'cycle: one cycle in a block of as many as it allows is computed, and two after it, by which the block '// &
-                    'is corrected and, if it errs by more than half of this, taken again, shorter; the first cycle of a step '// &
-                    'wears alone', &
+                    'is corrected or shortened', &
                     default='0.05', lower=1.0e-6_wp, upper=1.0_wp)
       call keys%add('wear', 'block', kind_integer, 'largest number of cycles in a block; if omitted: as many as the '// &
-                    'tolerance allows. An error above the tolerance is warned of', lower=1.0_wp, &
+                    'tolerance allows', lower=1.0_wp, &
                     upper=real(most_cycles, wp))
    end subroutine add_wear_keys
 
@@ -276,9 +269,9 @@ contains
       character(len=17) :: name
       integer :: i, control
 
-      call keys%add('history', 'file', kind_text, 'text file with the loads of the turning points instead of the lists below: '// &
-                    'columns with the names of these keys in the first line, and a row for every turning point; a column '// &
-                    'time is ignored; path relative to the case file')
+      call keys%add('history', 'file', kind_text, 'text file with the loads of the turning points instead of lists: columns '// &
+                    'with the names of these keys in the first line, and a row for every turning point; a column '// &
+                    'time is ignored')
       do i = 1, motion_count
          do control = first_control(i), control_displacement
             name = controlled_key(i, control)
@@ -290,8 +283,8 @@ contains
       call add_history_key('normal_intensity', 'force/length^(5/2)')
       keys%keys(keys%size)%lower = 0.0_wp
       call add_history_key('shear_intensity', 'force/length^(3/2)')
-      call keys%add('history', 'period', kind_integer, 'number of the last turning points that are a cycle, repeated as often '// &
-                    'as cycles says; if omitted: all of them if there are cycles, else none', lower=2.0_wp, upper=most_rows)
+      call keys%add('history', 'period', kind_integer, 'number of the last turning points that are a cycle; if omitted: '// &
+                    'all of them if there are cycles, else none', lower=2.0_wp, upper=most_rows)
       call keys%add('history', 'cycles', kind_integer, 'how many times the last turning points are passed through', default='1', &
                     lower=1.0_wp, upper=real(most_cycles, wp))
       call keys%add('history', 'steady_tolerance', kind_real, 'as in &step', above=0.0_wp)
@@ -313,17 +306,16 @@ contains
       type(catalogue_type), intent(inout) :: keys
 
       call keys%add('solver', 'algorithm', kind_choice, 'mfv: Method of First Violation; conventional: load steps with '// &
-                    'corrections of node statuses, for comparison', default='mfv', choices=algorithm_names)
+                    'corrections of node statuses', default='mfv', choices=algorithm_names)
       call keys%add('solver', 'accuracy', kind_real, 'allowed error: of the tractions, relative to the largest traction '// &
-                    '(rough contacts, of at least 8 patches with fewer than 64 nodes each on average: a root mean square, '// &
-                    'relative to that of the tractions), and, by large increments, of the dissipation of each load segment, '// &
-                    'relative to it; 0: only exact large increments; if omitted, 1e-3 on meshes of 384 nodes or more, else 0; '// &
+                    '(rough contacts, of at least 8 patches with fewer than 64 nodes each on average: a root mean square), '// &
+                    'and, by large increments, of the dissipation of each load segment; 0: only exact large increments; if '// &
+                    'omitted, 1e-3 on meshes of 384 nodes or more, else 0; '// &
                     'if given, also chooses nodes; dahl, weakening: see friction_tolerance', &
                     default='1e-3', lower=0.0_wp, upper=0.1_wp)
       call keys%add('solver', 'stepping', kind_choice, "algorithm='mfv': events found from rates (event), or from trial load "// &
-                    'steps and interpolation (nominal), with the same states (coulomb, static_kinetic); large increments '// &
-                    '(leap: coulomb); or large increments where they are exact, or accuracy allows them and they cost '// &
-                    'less than events (auto)', &
+                    'steps and interpolation (nominal; coulomb, static_kinetic); large increments (leap: coulomb); or large '// &
+                    'increments where accuracy allows them and they cost less than events (auto)', &
                     default='auto', choices=stepping_names)
       call add_part_key(keys, 'load_step', '0.05', "nominal load step, as a fraction of each load segment: for "// &
                         "algorithm='conventional', stepping='nominal', integration='explicit'")
@@ -336,8 +328,8 @@ contains
                     'load', default='1000', &
                     lower=1.0_wp, upper=1.0e6_wp)
       call keys%add('solver', 'linear_solver', kind_choice, 'auto: chosen by size and structure; dgesv: augmented system with '// &
-                    'LAPACK, the reference; reduced: factorisation that is updated at every event; fft: iterative, with '// &
-                    'products by FFTW and no matrix', default='auto', choices=solver_names)
+                    'LAPACK, the reference; reduced: factorisation that is updated at every event; fft: iterative, '// &
+                    'without a matrix', default='auto', choices=solver_names)
       call add_part_key(keys, 'linear_tolerance', '1e-12', "linear_solver='fft': relative residual at which iteration stops")
    end subroutine add_solver_keys
 
@@ -363,13 +355,12 @@ contains
                     to_text(most_turning_points)//' turning points', default='auto', &
                     choices='auto reversals steps none last_cycle')
       call keys%add('output', 'stress_at', kind_real, 'x at which /history has the stress along the surface of both bodies, '// &
-                    'with the largest tension along it and its x, at the end of every step, row and turning point; if omitted: '// &
-                    'neither', unit='length')
-      call keys%add('output', 'error_estimate', kind_logical, 'whether the case is also solved on coarser meshes, to estimate '// &
-                    'the discretisation errors of the observables', &
+                    'with the largest tension along it and its x', unit='length')
+      call keys%add('output', 'error_estimate', kind_logical, 'whether the case is also solved on coarser meshes, for error '// &
+                    'bars of the observables', &
                     default='.false.')
       call keys%add('output', 'sensitivity', kind_logical, 'whether the case is run once more with all coefficients of '// &
-                    'friction times 1 + 1e-12, to report how much that changes tractions, dissipation and stick ratio', &
+                    'friction times 1 + 1e-12, to report the changes', &
                     default='.false.')
       call keys%add('output', 'checkpoint_minutes', kind_real, 'mfv_run: least time between two checkpoints, from which '// &
                     'mfv_run --resume continues; 0: only when the run is interrupted', unit='minutes', lower=0.0_wp, &
