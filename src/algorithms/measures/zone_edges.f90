@@ -610,6 +610,8 @@ contains
             if (state%status(node) /= state%status(next)) return
             values(i) = slip_measure(state, node)
          end do
+         ! Nodes that rest at their limit have slipped by rounding errors.
+         if (values(2)**1.5_wp <= certified*max(abs(state%fields%tangential(node)), abs(state%fields%motion(motion_shift)))) return
          if (abs(values(2) - 2.0_wp*values(1) + values(0)) > straight*(values(1) - values(0))) return
          by_slip = edge_by_slip(model, state, next, side, edge)
          if (abs(by_slip - edge) <= agreement(merge(2, 1, samples%is_integral))*maxval(model%width([last, next]))) then

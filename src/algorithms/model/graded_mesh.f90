@@ -32,8 +32,8 @@ contains
       real(wp), allocatable, intent(out) :: ends(:)
       type(piece_type), allocatable :: pieces(:)
       real(wp), allocatable :: used(:)
-      real(wp) :: at_ends(size(points)), graded, even, smallest
-      integer :: i, j, intervals
+      real(wp) :: at_ends(size(points)), graded, even, shared, smallest
+      integer :: i, k, last
 
       ! Points at an end up to round-off, such as edges at corners of a body, are there: no interval fits between.
       smallest = (right - left)/real(nodes, wp)**grading
@@ -45,12 +45,12 @@ contains
          associate (piece => pieces(i))
             graded = (1.0_wp - uniform_part)*nodes*weight(piece, 1.0_wp/grading)/sum(weight(pieces, 1.0_wp/grading))
             even = uniform_part*nodes*weight(piece, 1.0_wp)/sum(weight(pieces, 1.0_wp))
-            intervals = max(1, nint(graded + even))
-            do j = 1, intervals
-               associate (k => merge(j, intervals - j, piece%side > 0))
-                  ends = [ends, piece%point + piece%side*piece%length* &
-                          distance_at(real(k, wp)/intervals, even/(graded + even))]
-               end associate
+            ! Both pieces between two points share an interval in the middle: the node there can stick where the others slip away
+            ! from it. Without one, which node of a symmetric contact sticks would be decided by round-off.
+            shared = merge(0.5_wp, 0.0_wp, merge(i < size(pieces), i > 1, piece%side > 0))
+            last = max(1, nint(graded + even - shared))
+            do k = merge(1, last - 1 + nint(2.0_wp*shared), piece%side > 0), merge(last, 0, piece%side > 0), piece%side
+               ends = [ends, piece%point + piece%side*piece%length*distance_at(k/(last + shared), even/(graded + even))]
             end do
          end associate
       end do
