@@ -201,8 +201,8 @@ def compared(base: mfv.Result, other: mfv.Result, tolerance: float, change: Any 
 
 
 def _different_ends(base: mfv.Result, other: mfv.Result) -> Differences:
-    """The outcomes of two runs if they differ, unless the other one is given up."""
-    if other.outcome in (base.outcome, "interrupted"):
+    """The outcomes of two runs if they differ, unless the other one is given up, or one says that its bristles are too stiff."""
+    if other.outcome in (base.outcome, "interrupted") or any("bristles are too stiff" in one.message for one in (base, other)):
         return {}
     return {f"outcome: {base.outcome} / {other.outcome}": np.inf}
 
