@@ -694,6 +694,8 @@ contains
                if (maxval(shear(:2) - shear(2:)) <= least_fall*shear(1)) cycle
             end associate
             names = 'peak_shear largest_shear'
+            ! Without a sharp limit all nodes slip, most where the pressure vanishes.
+            if (.not. model%scene%friction%sticks()) names = trim(names)//' largest_slip_range'
             if (causes_tension(simulation, node, side)) names = trim(names)//largest_tensions(simulation)
             call add_unresolved(unresolved, trim(names), 'the largest shear is in the outermost interval of a '// &
                                 'contact, near x = '//to_text(model%x(node), 4), remedy)
