@@ -65,9 +65,9 @@ module mfv_leap
       !> Increments of the first chain of the next interval.
       integer :: increments = 2
       logical :: by_violations = .false.
-      !> A contact that has begun in the segment, without friction, at the goal: the largest pressure, force/length^2; the friction
-      !> limit, force. Zero: it has not (has_begun).
-      real(wp) :: traction = 0.0_wp, sliding_limit = 0.0_wp
+      !> A contact that has begun in the segment, without friction, at the goal: the largest pressure and the 2-norm of all,
+      !> force/length^2; the friction limit, force. Zero: it has not (has_begun).
+      real(wp) :: traction = 0.0_wp, norm = 0.0_wp, sliding_limit = 0.0_wp
       !> The dissipation of the contact before the segment, force.
       real(wp) :: dissipation = 0.0_wp
    end type leap_progress_type
@@ -283,6 +283,7 @@ contains
       if (found) then
          nodes = path%state%contact_nodes()
          progress%traction = maxval(fields%pressure)
+         progress%norm = norm2(fields%pressure)
          progress%sliding_limit = path%model%force(path%model%static_friction*fields%pressure)
       end if
       path%state = start
@@ -550,18 +551,25 @@ contains
 
       error = 0.0_wp
       traction = reference_traction(path, progress, chain)
-      if (traction > 0.0_wp) error = ((chain%traction_error - chain%start_error)/safety + chain%start_error) &
-                                     /(path%model%scene%method%accuracy*traction)
+      if (.not. traction > 0.0_wp) return
+      error = chain%traction_error - chain%start_error
+      if (.not. chain%rough) error = error/safety
+      error = (error + chain%start_error)/(path%model%scene%method%accuracy*traction)
    end function relative_traction_error
 
    !> The traction that errors of those of a chain are compared with, force/length^2: the largest so far. If the contact has begun
-   !> in the segment, at least that at its end, which the state that it is left at then is as accurate as.
+   !> in the segment, at least that at its end, which the state that it is left at then is as accurate as: in rough contacts, whose
+   !> errors are root mean squares, in proportion to the 2-norms.
    pure real(wp) function reference_traction(path, progress, chain) result(traction)
       class(contact_path_type), intent(in) :: path
       type(leap_progress_type), intent(in) :: progress
       type(chain_type), intent(in) :: chain
 
       traction = max(path%certificate%traction_scale, chain%traction, progress%traction)
+      if (.not. (chain%rough .and. has_begun(progress))) return
+      associate (last => chain%after(chain%increments))
+         traction = traction*max(1.0_wp, progress%norm/norm2([last%pressure, last%shear]))
+      end associate
    end function reference_traction
 
    !> The estimated error of the dissipation of a chain, relative to the allowed one.
@@ -733,7 +741,7 @@ contains
       real(wp) :: order, ratio, least_order, most_order
 
       most_order = merge(2.0_wp, 1.0_wp, finer%fronts .and. .not. finer%begins)
-      least_order = 0.5_wp*most_order
+      least_order = merge(1.0_wp, 0.5_wp, finer%rough)*most_order
       ratio = real(finer%increments, wp)/real(coarser%increments, wp)
       associate (a => coarser%after(coarser%increments), b => finer%after(finer%increments))
          finer%difference = max(maxval(abs(a%pressure - b%pressure)), maxval(abs(a%shear - b%shear)))
