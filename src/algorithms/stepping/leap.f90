@@ -70,6 +70,8 @@ module mfv_leap
       real(wp) :: traction = 0.0_wp, norm = 0.0_wp, sliding_limit = 0.0_wp
       !> The dissipation of the contact before the segment, force.
       real(wp) :: dissipation = 0.0_wp
+      !> The sum of the squares of the errors of the tractions of rough contacts over the allowed one.
+      real(wp) :: spent = 0.0_wp
    end type leap_progress_type
 
 contains
@@ -226,7 +228,7 @@ contains
       few = is_coupled(path)
       if (.not. few) return
       if (any(in_contact(path%state%status))) then
-         few = has_begun(progress) .and. path%state%contact_nodes() < nodes_to_begin
+         few = has_begun(progress) .and. path%state%contact_nodes() < nodes_to_begin .and. .not. is_rough(path%state%status)
       else
          call first_guess(path, interval, 1.0_wp, contact)
          few = count(contact) < error_at_start/path%model%scene%method%accuracy .or. path%model%scene%is_layered()
@@ -542,20 +544,38 @@ contains
           (real(chain%solves, wp)*increments)/chain%increments > solves_per_change*chain%changes) increments = 0
    end subroutine choose
 
-   !> The estimated error of the tractions of a chain, relative to the allowed one.
+   !> The estimated error of the tractions of a chain, relative to the allowed one. In rough contacts intervals err at different
+   !> nodes, and their squares add up: an interval may take of what is left the power 2/3 of its share of the rest of the segment.
+   !> (Errors are of first order, and the norm of the tractions grows with the root of the load: with intervals that double, this
+   !> takes the fewest increments.)
    pure real(wp) function relative_traction_error(path, progress, chain) result(error)
       class(contact_path_type), intent(in) :: path
       type(leap_progress_type), intent(in) :: progress
       type(chain_type), intent(in) :: chain
+      real(wp), parameter :: power = 2.0_wp/3.0_wp
+
+      if (chain%rough) then
+         associate (share => progress%length/(progress%goal - progress%done))
+            error = over_allowed(path, progress, chain, chain%traction_error) &
+                    /sqrt(max(1.0_wp - progress%spent, tiny(1.0_wp))*share**power)
+         end associate
+      else
+         error = over_allowed(path, progress, chain, (chain%traction_error - chain%start_error)/safety + chain%start_error)
+      end if
+   end function relative_traction_error
+
+   !> An error of the tractions of a chain, force/length^2, relative to the accuracy.
+   pure real(wp) function over_allowed(path, progress, chain, traction_error) result(error)
+      class(contact_path_type), intent(in) :: path
+      type(leap_progress_type), intent(in) :: progress
+      type(chain_type), intent(in) :: chain
+      real(wp), intent(in) :: traction_error
       real(wp) :: traction
 
       error = 0.0_wp
       traction = reference_traction(path, progress, chain)
-      if (.not. traction > 0.0_wp) return
-      error = chain%traction_error - chain%start_error
-      if (.not. chain%rough) error = error/safety
-      error = (error + chain%start_error)/(path%model%scene%method%accuracy*traction)
-   end function relative_traction_error
+      if (traction > 0.0_wp) error = traction_error/(path%model%scene%method%accuracy*traction)
+   end function over_allowed
 
    !> The traction that errors of those of a chain are compared with, force/length^2: the largest so far. If the contact has begun
    !> in the segment, at least that at its end, which the state that it is left at then is as accurate as: in rough contacts, whose
@@ -840,9 +860,9 @@ contains
    subroutine accept_chain(path, interval, progress, chain)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
-      type(leap_progress_type), intent(in) :: progress
+      type(leap_progress_type), intent(inout) :: progress
       type(chain_type), intent(in) :: chain
-      real(wp) :: before(motion_count), share
+      real(wp) :: before(motion_count), share, error
       integer :: i
 
       share = 1.0_wp
@@ -861,8 +881,13 @@ contains
          path%work_error = path%work_error + error_of_works(chain, path%work - before)/path%model%scene%method%accuracy
       path%work = before + work_of_motions(path, chain, share*chain%node_wise, path%work - before)
       if (allocated(chain%samples)) call path%recent%keep(interval%load, chain%samples)
-      call path%certificate%note_large_increment(chain%traction_error, reference_traction(path, progress, chain), &
-                                                 chain%work_error, reference_work(path, progress, chain), chain%rough)
+      error = chain%traction_error
+      if (chain%rough) then
+         progress%spent = progress%spent + over_allowed(path, progress, chain, error)**2
+         error = sqrt(progress%spent)*path%model%scene%method%accuracy*reference_traction(path, progress, chain)
+      end if
+      call path%certificate%note_large_increment(error, reference_traction(path, progress, chain), chain%work_error, &
+                                                 reference_work(path, progress, chain), chain%rough)
    end subroutine accept_chain
 
    !> The work of the forces of all motions, force, from that along `straight` lines between the ends of increments, or from the
