@@ -153,7 +153,7 @@ contains
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
       type(segment_type) :: interval
-      type(chain_type) :: chain
+      type(chain_type), allocatable :: chain
       logical :: accepted, grown
 
       interval = subsegment(segment, progress%done, progress%done + progress%length)
@@ -312,10 +312,10 @@ contains
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
       type(leap_progress_type), intent(in) :: progress
-      type(chain_type), intent(out) :: chain
+      type(chain_type), allocatable, intent(out) :: chain
       logical, intent(out) :: accepted
       type(sample_type) :: start
-      type(chain_type) :: finer
+      type(chain_type), allocatable :: finer
       !> Both sums of the dissipation without rates may err in the same direction by more than they differ.
       real(wp), parameter :: both_wrong = 0.3_wp
       integer :: increments
@@ -333,22 +333,25 @@ contains
          if (accepted .and. path%record_events) increments = max(1, min(most_recorded, nodes/nodes_a_record, nodes_recorded/nodes))
       end associate
       if (.not. (accepted .or. begins)) increments = progress%increments
+      allocate (chain)
       call make_chain(path, interval, increments, start, chain)
       accepted = accepted .and. chain%found
       if (accepted .or. .not. chain%found) return
       if (.not. promises(path, progress, chain)) return
       if (increments > 1) then
-         finer = chain
+         call move_alloc(chain, finer)
+         allocate (chain)
          call make_chain(path, interval, increments/2, start, chain, finer)
          if (.not. chain%found) return
          ! As if every other state had been known.
          finer%solves = (finer%solves + 2*chain%solves)/2
       else
+         allocate (finer)
          call make_chain(path, interval, 2, start, finer, chain)
       end if
       do
          if (finer%found) call compare(path, interval, chain, finer)
-         chain = finer
+         call move_alloc(finer, chain)
          if (.not. chain%found) return
          call choose(path, progress, chain, accepted, increments)
          if (chain%fronts .and. .not. chain%begins .and. relative_work_error(path, progress, chain) > both_wrong) &
@@ -356,6 +359,7 @@ contains
          if (chain%fronts .and. accepted .and. .not. (chain%begins .or. allocated(chain%samples)) .and. shares_work(chain)) &
             call sample_works(path, interval, progress, start, chain)
          if (accepted .or. increments == 0) return
+         allocate (finer)
          call make_chain(path, interval, increments, start, finer, chain)
       end do
    end subroutine refine
