@@ -51,7 +51,7 @@ module mfv_leap
    !> Allowed part of the tolerance for errors of tractions by the path, which can be twice as large as estimated.
    real(wp), parameter :: safety = 0.5_wp
 
-   !> Contacts that have begun in the segment are pressed by events up to this number of nodes.
+   !> Contacts that have begun in the segment are pressed by events up to this number of nodes, or until they are rough.
    integer, parameter :: nodes_to_begin = 150
    !> Most increments of an interval in which such a contact grows, if its tractions are not accurate.
    integer, parameter :: most_growing = 8
@@ -756,7 +756,7 @@ contains
    !> Errors of the finer of two chains of an interval: tractions at the order at which they converge, at most the first, with
    !> fronts after the contact has begun the second, and at half that order if it is not known; dissipation by
    !> mfv_chain_dissipation. In rough contacts, where single nodes of small patches may close in another order, that of tractions
-   !> is a root mean square, times the ratio of the largest traction to theirs.
+   !> is a root mean square, times the ratio of the largest traction to theirs, at first order.
    subroutine compare(path, interval, coarser, finer)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
