@@ -91,7 +91,7 @@ def measure(bench: Bench, quick: bool) -> dict[str, Any]:
     fine = [{"points": finer} | vars(solve(bench, finer * WAVES, WAVES, True)) for finer in FINER]
     coupled = [
         {"points": points} | vars(solve(bench, points, points // POINTS, True, coupled=True))
-        for points in POINTS_COUPLED[: 2 if quick else 4]
+        for points in POINTS_COUPLED[: 2 if quick else None]
     ]
     return stamp() | {"rows": rows, "fine": fine, "coupled": coupled, "version": version()}
 

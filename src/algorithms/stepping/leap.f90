@@ -51,7 +51,7 @@ module mfv_leap
    !> Allowed part of the tolerance for errors of tractions by the path, which can be twice as large as estimated.
    real(wp), parameter :: safety = 0.5_wp
 
-   !> Contacts that have begun in the segment are pressed by events up to this number of nodes.
+   !> Contacts that have begun in the segment are pressed by events up to this number of nodes, or until they are rough.
    integer, parameter :: nodes_to_begin = 150
    !> Most increments of an interval in which such a contact grows, if its tractions are not accurate.
    integer, parameter :: most_growing = 8
@@ -65,11 +65,13 @@ module mfv_leap
       !> Increments of the first chain of the next interval.
       integer :: increments = 2
       logical :: by_violations = .false.
-      !> A contact that has begun in the segment, without friction, at the goal: the largest pressure, force/length^2; the friction
-      !> limit, force. Zero: it has not (has_begun).
-      real(wp) :: traction = 0.0_wp, sliding_limit = 0.0_wp
+      !> A contact that has begun in the segment, without friction, at the goal: the largest pressure and the 2-norm of all,
+      !> force/length^2; the friction limit, force. Zero: it has not (has_begun).
+      real(wp) :: traction = 0.0_wp, norm = 0.0_wp, sliding_limit = 0.0_wp
       !> The dissipation of the contact before the segment, force.
       real(wp) :: dissipation = 0.0_wp
+      !> The sum of the squares of the errors of the tractions of rough contacts over the allowed one.
+      real(wp) :: spent = 0.0_wp
    end type leap_progress_type
 
 contains
@@ -151,7 +153,7 @@ contains
       class(observer_type), intent(inout), optional :: observer
       type(error_type), allocatable, intent(out) :: error
       type(segment_type) :: interval
-      type(chain_type) :: chain
+      type(chain_type), allocatable :: chain
       logical :: accepted, grown
 
       interval = subsegment(segment, progress%done, progress%done + progress%length)
@@ -226,7 +228,7 @@ contains
       few = is_coupled(path)
       if (.not. few) return
       if (any(in_contact(path%state%status))) then
-         few = has_begun(progress) .and. path%state%contact_nodes() < nodes_to_begin
+         few = has_begun(progress) .and. path%state%contact_nodes() < nodes_to_begin .and. .not. is_rough(path%state%status)
       else
          call first_guess(path, interval, 1.0_wp, contact)
          few = count(contact) < error_at_start/path%model%scene%method%accuracy .or. path%model%scene%is_layered()
@@ -283,6 +285,7 @@ contains
       if (found) then
          nodes = path%state%contact_nodes()
          progress%traction = maxval(fields%pressure)
+         progress%norm = norm2(fields%pressure)
          progress%sliding_limit = path%model%force(path%model%static_friction*fields%pressure)
       end if
       path%state = start
@@ -309,10 +312,10 @@ contains
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
       type(leap_progress_type), intent(in) :: progress
-      type(chain_type), intent(out) :: chain
+      type(chain_type), allocatable, intent(out) :: chain
       logical, intent(out) :: accepted
       type(sample_type) :: start
-      type(chain_type) :: finer
+      type(chain_type), allocatable :: finer
       !> Both sums of the dissipation without rates may err in the same direction by more than they differ.
       real(wp), parameter :: both_wrong = 0.3_wp
       integer :: increments
@@ -330,22 +333,25 @@ contains
          if (accepted .and. path%record_events) increments = max(1, min(most_recorded, nodes/nodes_a_record, nodes_recorded/nodes))
       end associate
       if (.not. (accepted .or. begins)) increments = progress%increments
+      allocate (chain)
       call make_chain(path, interval, increments, start, chain)
       accepted = accepted .and. chain%found
       if (accepted .or. .not. chain%found) return
       if (.not. promises(path, progress, chain)) return
       if (increments > 1) then
-         finer = chain
+         call move_alloc(chain, finer)
+         allocate (chain)
          call make_chain(path, interval, increments/2, start, chain, finer)
          if (.not. chain%found) return
          ! As if every other state had been known.
          finer%solves = (finer%solves + 2*chain%solves)/2
       else
+         allocate (finer)
          call make_chain(path, interval, 2, start, finer, chain)
       end if
       do
          if (finer%found) call compare(path, interval, chain, finer)
-         chain = finer
+         call move_alloc(finer, chain)
          if (.not. chain%found) return
          call choose(path, progress, chain, accepted, increments)
          if (chain%fronts .and. .not. chain%begins .and. relative_work_error(path, progress, chain) > both_wrong) &
@@ -353,6 +359,7 @@ contains
          if (chain%fronts .and. accepted .and. .not. (chain%begins .or. allocated(chain%samples)) .and. shares_work(chain)) &
             call sample_works(path, interval, progress, start, chain)
          if (accepted .or. increments == 0) return
+         allocate (finer)
          call make_chain(path, interval, increments, start, finer, chain)
       end do
    end subroutine refine
@@ -541,27 +548,52 @@ contains
           (real(chain%solves, wp)*increments)/chain%increments > solves_per_change*chain%changes) increments = 0
    end subroutine choose
 
-   !> The estimated error of the tractions of a chain, relative to the allowed one.
+   !> The estimated error of the tractions of a chain, relative to the allowed one. In rough contacts intervals err at different
+   !> nodes, and their squares add up: an interval may take of what is left the power 2/3 of its share of the rest of the segment.
+   !> (Errors are of first order, and the norm of the tractions grows with the root of the load: with intervals that double, this
+   !> takes the fewest increments.)
    pure real(wp) function relative_traction_error(path, progress, chain) result(error)
       class(contact_path_type), intent(in) :: path
       type(leap_progress_type), intent(in) :: progress
       type(chain_type), intent(in) :: chain
+      real(wp), parameter :: power = 2.0_wp/3.0_wp
+
+      if (chain%rough) then
+         associate (share => progress%length/(progress%goal - progress%done))
+            error = over_allowed(path, progress, chain, chain%traction_error) &
+                    /sqrt(max(1.0_wp - progress%spent, tiny(1.0_wp))*share**power)
+         end associate
+      else
+         error = over_allowed(path, progress, chain, (chain%traction_error - chain%start_error)/safety + chain%start_error)
+      end if
+   end function relative_traction_error
+
+   !> An error of the tractions of a chain, force/length^2, relative to the accuracy.
+   pure real(wp) function over_allowed(path, progress, chain, traction_error) result(error)
+      class(contact_path_type), intent(in) :: path
+      type(leap_progress_type), intent(in) :: progress
+      type(chain_type), intent(in) :: chain
+      real(wp), intent(in) :: traction_error
       real(wp) :: traction
 
       error = 0.0_wp
       traction = reference_traction(path, progress, chain)
-      if (traction > 0.0_wp) error = ((chain%traction_error - chain%start_error)/safety + chain%start_error) &
-                                     /(path%model%scene%method%accuracy*traction)
-   end function relative_traction_error
+      if (traction > 0.0_wp) error = traction_error/(path%model%scene%method%accuracy*traction)
+   end function over_allowed
 
    !> The traction that errors of those of a chain are compared with, force/length^2: the largest so far. If the contact has begun
-   !> in the segment, at least that at its end, which the state that it is left at then is as accurate as.
+   !> in the segment, at least that at its end, which the state that it is left at then is as accurate as: in rough contacts, whose
+   !> errors are root mean squares, in proportion to the 2-norms.
    pure real(wp) function reference_traction(path, progress, chain) result(traction)
       class(contact_path_type), intent(in) :: path
       type(leap_progress_type), intent(in) :: progress
       type(chain_type), intent(in) :: chain
 
       traction = max(path%certificate%traction_scale, chain%traction, progress%traction)
+      if (.not. (chain%rough .and. has_begun(progress))) return
+      associate (last => chain%after(chain%increments))
+         traction = traction*max(1.0_wp, progress%norm/norm2([last%pressure, last%shear]))
+      end associate
    end function reference_traction
 
    !> The estimated error of the dissipation of a chain, relative to the allowed one.
@@ -724,7 +756,7 @@ contains
    !> Errors of the finer of two chains of an interval: tractions at the order at which they converge, at most the first, with
    !> fronts after the contact has begun the second, and at half that order if it is not known; dissipation by
    !> mfv_chain_dissipation. In rough contacts, where single nodes of small patches may close in another order, that of tractions
-   !> is a root mean square, times the ratio of the largest traction to theirs.
+   !> is a root mean square, times the ratio of the largest traction to theirs, at first order.
    subroutine compare(path, interval, coarser, finer)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
@@ -733,7 +765,7 @@ contains
       real(wp) :: order, ratio, least_order, most_order
 
       most_order = merge(2.0_wp, 1.0_wp, finer%fronts .and. .not. finer%begins)
-      least_order = 0.5_wp*most_order
+      least_order = merge(1.0_wp, 0.5_wp, finer%rough)*most_order
       ratio = real(finer%increments, wp)/real(coarser%increments, wp)
       associate (a => coarser%after(coarser%increments), b => finer%after(finer%increments))
          finer%difference = max(maxval(abs(a%pressure - b%pressure)), maxval(abs(a%shear - b%shear)))
@@ -832,9 +864,9 @@ contains
    subroutine accept_chain(path, interval, progress, chain)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: interval
-      type(leap_progress_type), intent(in) :: progress
+      type(leap_progress_type), intent(inout) :: progress
       type(chain_type), intent(in) :: chain
-      real(wp) :: before(motion_count), share
+      real(wp) :: before(motion_count), share, error
       integer :: i
 
       share = 1.0_wp
@@ -853,8 +885,13 @@ contains
          path%work_error = path%work_error + error_of_works(chain, path%work - before)/path%model%scene%method%accuracy
       path%work = before + work_of_motions(path, chain, share*chain%node_wise, path%work - before)
       if (allocated(chain%samples)) call path%recent%keep(interval%load, chain%samples)
-      call path%certificate%note_large_increment(chain%traction_error, reference_traction(path, progress, chain), &
-                                                 chain%work_error, reference_work(path, progress, chain), chain%rough)
+      error = chain%traction_error
+      if (chain%rough) then
+         progress%spent = progress%spent + over_allowed(path, progress, chain, error)**2
+         error = sqrt(progress%spent)*path%model%scene%method%accuracy*reference_traction(path, progress, chain)
+      end if
+      call path%certificate%note_large_increment(error, reference_traction(path, progress, chain), chain%work_error, &
+                                                 reference_work(path, progress, chain), chain%rough)
    end subroutine accept_chain
 
    !> The work of the forces of all motions, force, from that along `straight` lines between the ends of increments, or from the
