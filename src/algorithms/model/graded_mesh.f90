@@ -45,9 +45,9 @@ contains
          associate (piece => pieces(i))
             graded = (1.0_wp - uniform_part)*nodes*weight(piece, 1.0_wp/grading)/sum(weight(pieces, 1.0_wp/grading))
             even = uniform_part*nodes*weight(piece, 1.0_wp)/sum(weight(pieces, 1.0_wp))
-            ! Both pieces between two points share an interval in the middle: the node there can stick where the others slip away
-            ! from it. Without one, which node of a symmetric contact sticks would be decided by round-off.
-            shared = merge(0.5_wp, 0.0_wp, merge(i < size(pieces), i > 1, piece%side > 0))
+            ! The pieces that meet in the middle of all share an interval: the node there can stick where the others slip away from
+            ! it. Without one, which node of a symmetric contact sticks would be decided by round-off.
+            shared = merge(0.5_wp, 0.0_wp, size(pieces) == merge(2*i, 2*(i - 1), piece%side > 0))
             last = max(1, nint(graded + even - shared))
             do k = merge(1, last - 1 + nint(2.0_wp*shared), piece%side > 0), merge(last, 0, piece%side > 0), piece%side
                ends = [ends, piece%point + piece%side*piece%length*distance_at(k/(last + shared), even/(graded + even))]
