@@ -6,7 +6,6 @@
 module mfv_chain
    use mfv_active_set, only: end_of_run, find_rates
    use mfv_chain_dissipation, only: node_wise_dissipation, sample_type
-   use mfv_compliance, only: block_wt
    use mfv_contact_fields, only: contact_fields_type
    use mfv_contact_path, only: contact_path_type, segment_type
    use mfv_contact_state, only: contact_state_type
