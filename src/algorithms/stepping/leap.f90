@@ -350,8 +350,6 @@ contains
          call choose(path, progress, chain, accepted, increments)
          if (chain%fronts .and. .not. chain%begins .and. relative_work_error(path, progress, chain) > both_wrong) &
             call refine_samples(path, interval, progress, start, chain, accepted, increments)
-         if (chain%fronts .and. accepted .and. .not. (chain%begins .or. allocated(chain%samples)) .and. shares_work(chain)) &
-            call sample_works(path, interval, progress, start, chain)
          if (accepted .or. increments == 0) return
          call make_chain(path, interval, increments, start, finer, chain)
       end do
@@ -397,23 +395,6 @@ contains
       end do
       increments = 0
    end subroutine refine_samples
-
-   !> Take samples of an accurate chain for the works of the forces, if that makes them accurate.
-   subroutine sample_works(path, interval, progress, start, chain)
-      class(contact_path_type), intent(inout) :: path
-      type(segment_type), intent(in) :: interval
-      type(leap_progress_type), intent(in) :: progress
-      type(sample_type), intent(in) :: start
-      type(chain_type), intent(inout) :: chain
-      type(chain_type) :: sampled
-      logical :: accepted
-      integer :: increments
-
-      sampled = chain
-      accepted = .false.
-      call refine_samples(path, interval, progress, start, sampled, accepted, increments)
-      if (accepted) chain = sampled
-   end subroutine sample_works
 
    !> Whether the forces of several motions change as these move, so that the dissipation does not give the work of each.
    pure logical function shares_work(chain)
