@@ -35,7 +35,7 @@ module mfv_active_set
    !> Most nodes at fronts by which the statuses that the rates require may differ from those that the state does: where the slip at
    !> a front is only nearly as assumed, these alternate. Or one for this number of nodes that have stuck in the increment.
    integer, parameter :: at_fronts = 4, stuck_for_one = 4
-   !> Most corrections of the slip that is expected of open nodes.
+   !> Most corrections of the slip that is expected of open nodes, for given statuses.
    integer, parameter :: most_looks = 3
 
 contains
@@ -91,15 +91,16 @@ contains
          end if
          if (present(held)) then
             before = ahead
-            if (all(in_contact(wanted) .eqv. in_contact(path%state%status)) .and. &
+            if (count(in_contact(wanted) .neqv. in_contact(path%state%status)) <= few .and. &
                 (found .or. any(path%state%status == node_stick .and. .not. held))) &
                call find_returning(path, segment, fields, held, wanted, ahead)
+            if (looks < most_looks .and. maxval(abs(ahead - before)) > same_slip(path)*maxval(abs(fields%slip()))) then
+               ! Tractions at an edge hardly mean anything before this slip is known: no status changes by them.
+               looks = looks + 1
+               cycle
+            end if
          end if
          if (all(wanted == path%state%status)) then
-            if (present(held) .and. looks < most_looks) then
-               looks = looks + 1
-               if (maxval(abs(ahead - before)) > same_slip(path)*maxval(abs(fields%slip()))) cycle
-            end if
             if (present(held)) then
                call find_slipping_on(path, segment, fields, held, wanted)
                found = .not. reverses(path, fields, held)
@@ -118,6 +119,7 @@ contains
          end if
          found = .false.
          call find_touching(path, fields, wanted, hold)
+         looks = 0
          call path%set_status(wanted /= path%state%status, wanted)
          path%state%stuck_slip = hold
          if (.not. is_among(wanted, tried(:, first:solve))) cycle
@@ -259,7 +261,8 @@ contains
    !> Nodes that slip, but would slip back at the end of the increment, stick in `wanted`: the edge of a stick zone has passed them.
    !> The zone is then too small, and its nodes stay stuck but for those of `held`, since the shear traction exceeds the limit in
    !> zones that are too small as well as in those that are too large. `ahead`: how far open nodes next to stuck ones will slip
-   !> until they touch, at the rates of the end; length, shape (nodes). Nothing is changed if the rates are not determined.
+   !> until they touch, at the rates of the end; length, shape (nodes). Only this is found if nodes open or close in `wanted`, and
+   !> nothing is changed if the rates are not determined.
    subroutine find_returning(path, segment, fields, held, wanted, ahead)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -282,6 +285,7 @@ contains
          gap_rate = path%model%gap(fields%plus(1.0_wp, rates)) - gap
          ahead = 0.0_wp
          where (next .and. gap_rate < 0.0_wp) ahead = -rates%slip()*gap/gap_rate
+         if (any(in_contact(wanted) .neqv. in_contact(status))) return
          returns = slipping_back(path, status, rates)
          if (.not. any(returns)) return
          where (returns) wanted = node_stick

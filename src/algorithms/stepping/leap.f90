@@ -11,8 +11,8 @@
 !> an increment is treated as stuck. Dissipation: see mfv_chain_dissipation.
 !>
 !> With full coupling the shear tractions depend on how the contact has grown. If it begins on layers, or one chain is not accurate
-!> (it is, if the contact grows in proportion to its shape), it begins by events, on few nodes; then intervals double the load or,
-!> where that is not accurate, less. Their errors are compared with tractions and dissipation at the end of the segment.
+!> (it is, if the contact grows in proportion to its shape), it begins by events, on few nodes; then intervals double the load.
+!> Their errors are compared with tractions and dissipation at the end of the segment.
 !>
 !> An interval that would take more solves than it has events is applied by events (mfv_first_violation), which are exact; gross
 !> sliding and separation are therefore found there. The certificate checks large increments at their ends only.
@@ -145,7 +145,8 @@ contains
       if (has_begun(progress)) length = max(shortest*progress%longest, least_growth*progress%done)
    end function shortest_length
 
-   !> Try the next interval. If it is not accurate, it is shortened or applied by events (`progress%by_violations`).
+   !> Try the next interval. If its statuses are not found, it is shortened; if it is not accurate, it is applied by events
+   !> (`progress%by_violations`).
    subroutine try_large_increments(path, segment, progress, observer, error)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
@@ -181,25 +182,13 @@ contains
       else if (chain%found .and. .not. is_worth_it(progress, chain)) then
          progress%length = progress%longest
          progress%by_violations = .true.
-      else if ((shortens(path, progress, chain) .or. .not. chain%found) .and. chain%solves < path%state%contact_nodes() .and. &
+      else if (.not. chain%found .and. chain%solves < path%state%contact_nodes() .and. &
                progress%length > shortest_length(progress)) then
          progress%length = 0.5_wp*progress%length
       else
          progress%by_violations = .true.
       end if
    end subroutine try_large_increments
-
-   !> Whether the tractions of a chain that presses a contact which has begun in the segment would be accurate with less growth:
-   !> their error where nodes close remains.
-   pure logical function shortens(path, progress, chain)
-      class(contact_path_type), intent(in) :: path
-      type(leap_progress_type), intent(in) :: progress
-      type(chain_type), intent(in) :: chain
-
-      shortens = has_begun(progress) .and. chain%increments > 1 .and. &
-                 chain%start_error <= safety*path%model%scene%method%accuracy*reference_traction(path, progress, chain)
-      if (shortens) shortens = relative_traction_error(path, progress, chain) > 1.0_wp
-   end function shortens
 
    !> Whether a chain of more increments would take fewer solves than events. Not asked of contacts that have not begun in the
    !> segment.
@@ -356,8 +345,6 @@ contains
          call choose(path, progress, chain, accepted, increments)
          if (chain%fronts .and. .not. chain%begins .and. relative_work_error(path, progress, chain) > both_wrong) &
             call refine_samples(path, interval, progress, start, chain, accepted, increments)
-         if (chain%fronts .and. accepted .and. .not. (chain%begins .or. allocated(chain%samples)) .and. shares_work(chain)) &
-            call sample_works(path, interval, progress, start, chain)
          if (accepted .or. increments == 0) return
          allocate (finer)
          call make_chain(path, interval, increments, start, finer, chain)
@@ -404,23 +391,6 @@ contains
       end do
       increments = 0
    end subroutine refine_samples
-
-   !> Take samples of an accurate chain for the works of the forces, if that makes them accurate.
-   subroutine sample_works(path, interval, progress, start, chain)
-      class(contact_path_type), intent(inout) :: path
-      type(segment_type), intent(in) :: interval
-      type(leap_progress_type), intent(in) :: progress
-      type(sample_type), intent(in) :: start
-      type(chain_type), intent(inout) :: chain
-      type(chain_type) :: sampled
-      logical :: accepted
-      integer :: increments
-
-      sampled = chain
-      accepted = .false.
-      call refine_samples(path, interval, progress, start, sampled, accepted, increments)
-      if (accepted) chain = sampled
-   end subroutine sample_works
 
    !> Whether the forces of several motions change as these move, so that the dissipation does not give the work of each.
    pure logical function shares_work(chain)

@@ -2,7 +2,6 @@
 module mfv_recent_intervals
    use mfv_chain_dissipation, only: sample_type
    use mfv_contact_system, only: load_type
-   use mfv_kinds, only: wp
    use mfv_motions, only: motion_count
    use mfv_tolerances, only: significant
    implicit none
