@@ -768,7 +768,8 @@ contains
          end associate
       end subroutine check_jumps
 
-      !> Of several stick zones those with one or two nodes, and slip zones between them with so few, may not be there on another mesh.
+      !> Of several stick zones those with one or two nodes, and slip zones between them with so few, may not be there on another
+      !> mesh.
       subroutine check_narrow_zones()
          integer, parameter :: most = 2
          logical, allocatable :: narrow(:), touching(:)
