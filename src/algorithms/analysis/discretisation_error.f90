@@ -573,9 +573,8 @@ contains
             where (observables%error == error_local .and. index(observables%name, '_tension') > 0) &
                allowances = allowances + fineness*abs(values)
          end if
-         call add_jumps(simulation%contact%state, '')
-         call add_jumps(simulation%contact%state, 'largest_')
-         if (simulation%cycle_count > 0) call add_jumps(simulation%padded(simulation%marks(mark_reversal)), 'largest_')
+         call add_jumps(simulation%contact%state, at_end=.true.)
+         if (simulation%cycle_count > 0) call add_jumps(simulation%padded(simulation%marks(mark_reversal)), at_end=.false.)
          ! What slips within the outermost intervals while friction acts against coupling stays in the shift.
          if (pressing_shears(model) .and. stick_zones_can_grow(model)) &
             where (observables%name == 'shift') allowances = allowances + maxval(hidden_slip())
@@ -617,16 +616,21 @@ contains
             allowances = max(allowances, of_behaviour(observables%error))
       end subroutine take_turning_point
 
-      !> What a tension at a jump of the shear in a state may exceed the largest tensions, whose names begin with `prefix`, by.
-      subroutine add_jumps(state, prefix)
+      !> By how much a tension at a jump of the shear in a state may exceed the largest tensions over the load history and, in the
+      !> last state (`at_end`), those there.
+      subroutine add_jumps(state, at_end)
          type(contact_state_type), intent(in) :: state
-         character(*), intent(in) :: prefix
-         integer :: side, place
+         logical, intent(in) :: at_end
+         real(wp) :: tension
+         integer :: side, place, largest
 
          do side = 1, size(body_names)
-            place = observable_place(prefix//body_names(side)//'_tension')
-            if (ieee_is_nan(values(place))) cycle
-            allowances(place) = max(allowances(place), tension_at_jump(simulation%contact%model, state, side == 2) - values(place))
+            place = observable_place(body_names(side)//'_tension')
+            largest = observable_place('largest_'//body_names(side)//'_tension')
+            if (ieee_is_nan(values(largest))) cycle
+            tension = tension_at_jump(simulation%contact%model, state, side == 2)
+            allowances(largest) = max(allowances(largest), tension - values(largest))
+            if (at_end .and. .not. ieee_is_nan(values(place))) allowances(place) = max(allowances(place), tension - values(place))
          end do
       end subroutine add_jumps
 
