@@ -230,11 +230,11 @@ LAWS = {
 }
 
 
-@pytest.mark.parametrize(("waves", "nodes"), [(False, 600), (False, 601), (True, 600), (True, 700), (True, 701)])
+@pytest.mark.parametrize(("waves", "nodes"), [(False, 600), (False, 601), (True, 600), (True, 601), (True, 700), (True, 701)])
 def test_growing_stick_zones_by_iteration(waves: bool, nodes: int) -> None:
     """Slip at fronts in the rows of the iteration, by responses in the direct solver; even and odd numbers of nodes; mirror images.
 
-    Responses take solves of their own: under waves on 600 nodes the direct solver takes events where the iteration takes increments,
+    Responses take solves of their own: under waves on 600 and 601 nodes the direct solver takes events where the iteration takes increments,
     and they agree within the accuracy."""
 
     def steps(sign: float, solver: str) -> list[Any]:
@@ -260,7 +260,7 @@ def test_growing_stick_zones_by_iteration(waves: bool, nodes: int) -> None:
         allowed = 1e-8 if increments[0] == increments[1] else 1e-2
         assert one.shear == pytest.approx(direct.shear, rel=0, abs=allowed * peak)
         assert one.shear == pytest.approx(-mirrored_one.shear[::-1], rel=0, abs=1e-8 * peak)
-    assert increments[0] == increments[1] or (waves, nodes) == (True, 600)
+    assert (increments[0] == increments[1]) == ((waves, nodes) not in [(True, 600), (True, 601)])
 
 
 @pytest.mark.parametrize("law", LAWS)

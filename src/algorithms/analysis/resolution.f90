@@ -788,11 +788,9 @@ contains
                       trim(merge('has ', 'have', count(narrow) == 1))//' only one or two nodes'
                if (count(narrow) > 1) text = text//', the first'
                text = text//' near x = '//to_text(model%x(zones(findloc(narrow, .true., dim=1))%first), 4)
-               if (model%scene%wear%acts()) then
-                  call add_unresolved(unresolved, names, text, 'beside a worn edge they depend on the mesh')
-               else
-                  call add_unresolved(unresolved, names, text, 'use more nodes')
-               end if
+               call add_unresolved(unresolved, names, text, trim(merge('beside a worn edge they depend on the mesh', &
+                                                                       'use more nodes                            ', &
+                                                                       model%scene%wear%acts())))
                return
             end if
             touching = in_contact(simulation%contact%state%status)

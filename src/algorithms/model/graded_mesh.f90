@@ -49,7 +49,7 @@ contains
             ! it. Without one, which node of a symmetric contact sticks would be decided by round-off.
             shared = merge(0.5_wp, 0.0_wp, size(pieces) == merge(2*i, 2*(i - 1), piece%side > 0))
             last = max(1, nint(graded + even - shared))
-            do k = merge(1, last - 1 + nint(2.0_wp*shared), piece%side > 0), merge(last, 0, piece%side > 0), piece%side
+            do k = merge(1, merge(last, last - 1, shared > 0.0_wp), piece%side > 0), merge(last, 0, piece%side > 0), piece%side
                ends = [ends, piece%point + piece%side*piece%length*distance_at(k/(last + shared), even/(graded + even))]
             end do
          end associate
