@@ -94,19 +94,6 @@ EQUAL = {
     "stick_ratio_lowest": "smallest_stick_ratio",
     "stick_ratio_highest": "largest_stick_ratio",
 }
-#: Observables whose relative bars add up to that of a quantity.
-FACTORS = {
-    "half_width_number": ("contact_half_width",),
-    "pressure_number": ("peak_pressure", "contact_half_width"),
-    "shear_number": ("peak_shear", "contact_half_width"),
-    "dissipation_number": ("cycle_dissipation", "normal_force"),
-    "stiffness_number": ("tangential_stiffness",),
-    "shift_number": ("shift_amplitude",),
-    "force_number": ("force_amplitude", "normal_force"),
-    "creepage_number": ("creepage", "contact_half_width"),
-}
-#: Without a bar where they are prescribed, and exact.
-PRESCRIBED = {"normal_force", "force_amplitude"}
 
 
 class Verdict(NamedTuple):
@@ -207,7 +194,8 @@ def _but_for_narrow_zones(verdict: Verdict, name: str, base: mfv.Result, fine: m
         places = [fine.mesh.x[end] for end in ends]
         if name.endswith("_slip_zone"):
             edge = fine.observables.contact_centre + (0.5 if "right" in name else -0.5) * fine.observables.contact_length
-            places = [abs(edge - place) for place in places]
+            along = fine.mesh.arc if "arc" in fine.mesh else fine.mesh.x
+            places = [abs(edge - along[end]) for end in ends]
         explains = any(abs(place - verdict.value) <= NARROW * widths[end] for place, end in zip(places, ends))
         return verdict._replace(word="unknown") if explains else verdict
     own = len(_zones(base, statuses, 0.0 * np.asarray(base.mesh.x)))
@@ -301,15 +289,10 @@ def bar_of(base: mfv.Result, path: str, value: float) -> float:
     turning = re.fullmatch(r"(?:left|right)_slip_zone_(reversal|return)", name)
     if turning:
         return bar_of(base, f"observables/stick_ratio_{turning[1]}", math.nan) * float(base.observables.contact_length)
-    factors = ("cycle_dissipation",) if name.endswith("_work") else FACTORS.get(name)
-    if not factors:
+    if not name.endswith("_work"):
         return _error_of(base, EQUAL.get(name, public_name(path)))
-    relative = 0.0
-    for factor in factors:
-        error, of = _error_of(base, factor), abs(float(base.observables[factor]))
-        if not (math.isnan(error) and factor in PRESCRIBED):
-            relative += error / of if of > 0.0 else math.inf if error > 0.0 else 0.0
-    return relative * abs(value) if math.isfinite(relative) else relative
+    error, of = _error_of(base, "cycle_dissipation"), abs(float(base.observables.cycle_dissipation))
+    return error * abs(value) / of if of > 0.0 else error
 
 
 def _bar_of_row(base: mfv.Result, path: str, row: int, value: float, last: float, bar: float) -> float:

@@ -21,7 +21,8 @@ module mfv_discretisation_error
    use mfv_observables
    use mfv_observer, only: observer_type, relay_type
    use mfv_profile_sampling, only: largest_jumps, negligible_pressure
-   use mfv_resolution, only: add_unresolved, all_quantities, find_unresolved, is_unresolved, undersampling, unresolved_type
+   use mfv_resolution, only: add_unresolved, all_quantities, find_unresolved, is_unresolved, nodes_in, &
+                             poorest_patch, undersampling, unresolved_type
    use mfv_scene, only: scene_type
    use mfv_simulation, only: history_none, mark_loading, mark_return, mark_reversal, new_simulation, simulation_type, &
                              states_steps
@@ -43,6 +44,19 @@ module mfv_discretisation_error
    !> Factor on the bars of unequal intervals, whose coarser meshes differ less from them than their errors do: measured
    !> (docs/verification.md).
    real(wp), parameter :: of_unequal_intervals = 2.0_wp
+   !> With few nodes in a patch errors do not yet fall regularly from mesh to mesh: bars grow by (few_nodes/nodes)^3, at most by
+   !> most_growth. Measured (docs/verification.md).
+   real(wp), parameter :: few_nodes = 24.0_wp, most_growth = 2.0_wp
+   !> Dimensionless numbers, and the observables whose relative errors add up to theirs.
+   character(*), parameter :: numbers(3, 8) = reshape([character(20) :: &
+                                                       'half_width_number', 'contact_half_width', '', &
+                                                       'pressure_number', 'peak_pressure', 'contact_half_width', &
+                                                       'shear_number', 'peak_shear', 'contact_half_width', &
+                                                       'force_number', 'force_amplitude', 'normal_force', &
+                                                       'shift_number', 'shift_amplitude', '', &
+                                                       'dissipation_number', 'cycle_dissipation', 'normal_force', &
+                                                       'stiffness_number', 'tangential_stiffness', '', &
+                                                       'creepage_number', 'creepage', 'contact_half_width'], [3, 8])
    !> Least uncertainty of tensions on equal intervals, relative, over (interval/half-width)^2, for coarser meshes that agree better
    !> because their edges happen to lie alike in an interval: measured (docs/verification.md, the trailing edge).
    real(wp), parameter :: of_tensions = 0.03_wp
@@ -99,16 +113,42 @@ contains
                                                                     simulation%contact%state%fields%pressure, values(place, 1)))
                if (observables(place)%name == 'largest_slip_range') &
                   call narrow_slip_range(nodes, values, allowances, estimate%bar(place))
-               if (allocated(simulation%contact%model%scene%mesh%ends)) &
-                  estimate%bar(place)%error = of_unequal_intervals*estimate%bar(place)%error
             end if
             if (peak_is_at_corner(simulation, place, values(:, 1))) estimate%bar(place) = logarithmic_bar(values(place, :))
          end do
-         call drop_uncertain_places(values, estimate%bar)
+         estimate%bar%error = (1.0_wp + min((few_nodes/nodes_in(poorest_patch(simulation)))**3, most_growth))*estimate%bar%error
+         if (allocated(simulation%contact%model%scene%mesh%ends)) estimate%bar%error = of_unequal_intervals*estimate%bar%error
+         call add_numbers(values, estimate%bar)
+         call widen_uncertain_places(values, estimate%bar)
          call add_rivals(simulation, observed%extremes, estimate%bar)
       end if
       simulation%estimate = estimate
    end subroutine estimate_error
+
+   !> The bars of the dimensionless numbers, from those of their factors. `values`: of all observables on all meshes; their bars,
+   !> shape (observable_count).
+   pure subroutine add_numbers(values, bars)
+      real(wp), intent(in) :: values(:, :)
+      type(error_bar_type), intent(inout) :: bars(:)
+      integer :: i, j, place
+
+      do i = 1, size(numbers, 2)
+         place = observable_place(trim(numbers(1, i)))
+         if (ieee_is_nan(values(place, 1))) cycle
+         bars(place)%value = values(place, 1)
+         bars(place)%coarser_values = values(place, 2:)
+         do j = 2, size(numbers, 1)
+            if (numbers(j, i) == '') cycle
+            associate (bar => bars(place), of => bars(observable_place(trim(numbers(j, i)))))
+               if (.not. of%known) cycle
+               if (j == 2) bar%order = of%order
+               bar%known = .true.
+               bar%resolved = bar%resolved .and. of%resolved
+               if (of%error > 0.0_wp .or. .not. of%resolved) bar%error = bar%error + abs(bar%value/of%value)*of%error
+            end associate
+         end do
+      end do
+   end subroutine add_numbers
 
    !> The largest tension or pressure may be at another place where one is as large within their bars, as at both edges of a
    !> contact: its distance is added to the bars of places. `extremes`: see find_extremes; `bars`: shape (observable_count).
@@ -148,10 +188,10 @@ contains
       end subroutine add
    end subroutine add_rivals
 
-   !> Where a quantity is largest is not resolved if it is uncertain by so much that it may be as large elsewhere; but a slip range
-   !> is uncertain by what the outermost node misses. `values`: of all observables on all meshes; their bars, shape
-   !> (observable_count).
-   pure subroutine drop_uncertain_places(values, bars)
+   !> Where a quantity is largest is uncertain by the length of the contact if it is uncertain by so much that it may be as large
+   !> elsewhere; but a slip range is uncertain by what the outermost node misses. `values`: of all observables on all meshes; their
+   !> bars, shape (observable_count).
+   pure subroutine widen_uncertain_places(values, bars)
       real(wp), intent(in) :: values(:, :)
       type(error_bar_type), intent(inout) :: bars(:)
       real(wp), parameter :: uncertain = 0.1_wp
@@ -164,9 +204,10 @@ contains
          if (name == 'largest_slip_range_x') cycle
          largest = observable_place(name(:len(name) - 2))  ! without _x or _y
          if (.not. bars(largest)%known) cycle
-         if (bars(largest)%error > uncertain*abs(values(largest, 1))) bars(place) = unresolved_bar(values(place, :))
+         if (bars(place)%resolved .and. bars(largest)%error > uncertain*abs(values(largest, 1))) &
+            bars(place)%error = max(bars(place)%error, values(observable_place('contact_length'), 1))
       end do
-   end subroutine drop_uncertain_places
+   end subroutine widen_uncertain_places
 
    !> The bar of a slip range that is largest at the outermost node of one patch, on every mesh: in first order the range grows in
    !> proportion to the distance of this node from the contact's edge, d, with a slope from all meshes. The bar is slope*d and what

@@ -2,10 +2,12 @@
 !> than the mesh has nodes, rounded edges, slip zones. Warnings and error bars take it from here.
 module mfv_resolution
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-   use mfv_body, only: body_type
+   use mfv_body, only: body_names, body_type
    use mfv_compliance, only: block_wt
-   use mfv_contact_model, only: contact_model_type, needs_equal_intervals
+   use mfv_contact_model, only: contact_model_type, gap_at, needs_equal_intervals
    use mfv_contact_state, only: contact_state_type
+   use mfv_edge_fields, only: edge_quantities
+   use mfv_extreme_states, only: has_largest_tension
    use mfv_interior, only: has_interior
    use mfv_kinds, only: pi, wp
    use mfv_layers, only: layers_type
@@ -17,13 +19,13 @@ module mfv_resolution
    use mfv_slip_zones, only: contact_interval, hidden_width_at_edge, is_narrow_stick_zone, needed_mesh, nodes_at_edge, &
                              resolved_nodes, slip_record_type
    use mfv_strings, only: has_word, to_text
-   use mfv_tolerances, only: certified
+   use mfv_tolerances, only: certified, visible
    use mfv_zone_edges, only: find_patches, find_zone_edges, held, is_beyond_corner, patch_type, rises_at_end, zone_edges_type, &
                              zone_type, zones_of
    implicit none
    private
    public :: find_unresolved, unresolved_type, add_unresolved, is_unresolved, all_quantities, undersampling, poorest_patch, &
-             fewest_patch_nodes, find_unresolved_observables, refinement_for_layers
+             fewest_patch_nodes, find_unresolved_observables, refinement_for_layers, nodes_in
 
    !> What a mesh does not resolve.
    type :: unresolved_type
@@ -50,6 +52,7 @@ contains
          call check_rounded_edges(simulation, .true., unresolved)
          call check_thin_layers(simulation, .false., unresolved)
          call check_thin_layers(simulation, .true., unresolved)
+         call check_beyond_mesh(simulation, unresolved)
       end if
       call check_surface_ends(simulation, unresolved)
       call check_slip_zones(simulation, unresolved)
@@ -215,13 +218,17 @@ contains
       if (has_interior(simulation%contact%model%scene%upper)) names = trim(names)//' largest_upper_tension'
    end function largest_tensions
 
-   !> The tensions at the end and, where that may be the largest one, over the history.
+   !> The tensions at the end and, where that may be the largest one, over the history or its last cycle.
    function tensions_at_end(simulation) result(names)
       type(simulation_type), intent(in) :: simulation
       character(len=72) :: names
+      integer :: i
 
       names = tensions(simulation)
-      if (simulation%cycle_count == 0) names = largest_tensions(simulation)
+      do i = 1, size(body_names)
+         if (index(names, body_names(i)) > 0 .and. has_largest_tension(simulation, i)) &
+            names = trim(names)//' largest_'//body_names(i)//'_tension'
+      end do
    end function tensions_at_end
 
    !> The contact patches. Where the surfaces repeat, the ends of the mesh are neighbours: a last patch that continues in the first
@@ -280,6 +287,12 @@ contains
       end associate
    end function poorest_patch
 
+   pure integer function nodes_in(patch)
+      type(zone_type), intent(in) :: patch
+
+      nodes_in = patch%last - patch%first + 1
+   end function nodes_in
+
    !> Contact patches with few nodes. With coupling the exponents at the edges depend on whether the outermost nodes slip, even if
    !> the outermost patches carry next to nothing.
    subroutine check_patches(simulation, unresolved)
@@ -312,12 +325,6 @@ contains
       end associate
 
    contains
-
-      pure integer function nodes_in(patch)
-         type(zone_type), intent(in) :: patch
-
-         nodes_in = patch%last - patch%first + 1
-      end function nodes_in
 
       !> Add the quantities that a patch does not resolve; `advice` comes before that on the mesh.
       subroutine add_patch(patch, quantities, advice)
@@ -506,6 +513,39 @@ contains
          if (names /= '') factor = max(factor, resolved_nodes/intervals)
       end do
    end function refinement_for_layers
+
+   !> Surfaces that overlap beyond the mesh, which is lengthened next to the contact only: another patch is missed there. Looked for
+   !> where the gap falls again beyond the mesh, within as many intervals to either side as the mesh has.
+   subroutine check_beyond_mesh(simulation, unresolved)
+      type(simulation_type), intent(in) :: simulation
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
+      type(contact_model_type) :: model
+      type(contact_state_type) :: state
+      logical, allocatable :: overlap(:)
+      integer :: extra, i, n, first
+
+      associate (mesh => simulation%contact%model, scene => simulation%contact%model%scene)
+         if (scene%lower%is_matrix() .or. allocated(scene%mesh%ends) .or. scene%repeat_length() > 0.0_wp) return
+         n = mesh%nodes()
+         extra = min(mesh%spare_nodes(), n)
+         if (extra < 1) return
+         associate (left => gap_at(scene, [(mesh%arc(1) - i*mesh%interval(), i=0, extra)]), &
+                    right => gap_at(scene, [(mesh%arc(n) + i*mesh%interval(), i=0, extra)]))
+            if (.not. (any(left(2:) < left(:extra)) .or. any(right(2:) < right(:extra)))) return
+         end associate
+         model = mesh
+      end associate
+      call model%grow(extra)
+      state = simulation%contact%state
+      call state%widen(extra)
+      call model%displace(state%fields)
+      overlap = model%can_touch .and. model%gap(state%fields) < -visible*abs(state%fields%motion(motion_approach))
+      overlap(extra + 1:extra + n) = .false.
+      first = findloc(overlap, .true., dim=1)
+      if (first == 0) return
+      call add_unresolved(unresolved, trim(all_quantities(simulation)), 'the surfaces overlap beyond the mesh, near x = '// &
+                          to_text(model%x(first), 4), 'give a larger half_width in &mesh')
+   end subroutine check_beyond_mesh
 
    !> The end of a surface that is no corner by design: the pressure there has no limit.
    subroutine check_surface_ends(simulation, unresolved)
@@ -899,6 +939,7 @@ contains
                                 'worn_area wear_depth left_corner_intensity right_corner_intensity'//tensions(simulation), &
                                 'no node slips in a cycle: what slips, and wears, at the edges is narrower than the mesh', &
                                 trim(finer_mesh(simulation)))
+         call check_worn_edges()
          if (.not. pressure_at_worn_kink(model, state) > sharp*maxval(state%fields%pressure)) return
          remedy = 'use more nodes'
          ! A scar is under a nearly uniform pressure up to its ends (docs/theory.md, wear).
@@ -908,6 +949,30 @@ contains
                              tensions(simulation), 'the worn part of the surface ends within few intervals where the '// &
                              'pressure is large', remedy)
       end associate
+
+   contains
+
+      !> Where the outermost node is worn, the pressure is flat up to a new edge, and no root over some intervals.
+      subroutine check_worn_edges()
+         !> Intensities, the slip zone by them, and how far they hold.
+         integer, parameter :: of_root(4) = [1, 2, 4, 5]
+         character(:), allocatable :: names
+         integer :: side, edge, i
+
+         names = ''
+         associate (state => simulation%contact%state)
+            do side = 1, 2
+               edge = findloc(in_contact(state%status), .true., dim=1, back=side == 2)
+               if (edge == 0) return
+               if (.not. state%worn(edge) > 0.0_wp) cycle
+               do i = 1, size(of_root)
+                  names = names//' '//trim(merge('left_ ', 'right_', side == 1))//trim(edge_quantities(of_root(i)))
+               end do
+            end do
+         end associate
+         if (names /= '') call add_unresolved(unresolved, names(2:), 'the surface is worn up to the edge of the contact, where '// &
+                                              'the pressure is no root any more', 'fields of edges describe unworn ones')
+      end subroutine check_worn_edges
    end subroutine check_worn_shape
 
    !> Pressure that the sharpest bend of the worn depth adds, force/length^2, where the pressure is large: m J/pi by a jump J of the

@@ -60,7 +60,7 @@ contains
       real(wp), intent(in) :: values(:), allowances(:)
       logical, intent(in) :: by_edges, smooth, bounded
       real(wp), dimension(size(values) - 1) :: ratio, difference
-      real(wp) :: scatter
+      real(wp) :: scatter, own
 
       bar%known = .true.
       bar%value = values(1)
@@ -76,7 +76,10 @@ contains
       bar%order = lowest_order
       if (smooth) bar%order = observed_order(nodes, values)
       scatter = norm2(difference/(ratio**bar%order - 1.0_wp))/sqrt(real(size(difference), wp))
-      bar%error = norm2([allowances(1), safety*scatter])
+      ! An edge that this mesh alone seems to know well does so by chance.
+      own = allowances(1)
+      if (by_edges) own = max(own, minval(allowances(2:)/ratio**2))
+      bar%error = norm2([own, safety*scatter])
    end function new_error_bar
 
    !> Whether the values diverge.

@@ -170,7 +170,7 @@ contains
       node = [(edge - side*i, i=0, last)]
       if (minval(node) < 1 .or. maxval(node) > size(state%status)) return
       if (.not. model%scene%friction%law%sticks .or. .not. all(holds(state%status(node)))) return
-      if (size(zones_of(in_contact(state%status))) /= 1 .or. ends_with_body(model, edge, side)) return
+      if (size(zones_of(in_contact(state%status))) /= 1 .or. ends_with_body(model, state, edge, side)) return
       call find_zone_edges(model, state, edges)
       associate (inner => node(first:))
          distance = abs(model%arc(inner) - merge(edges%contact_left, edges%contact_right, side < 0))
@@ -377,7 +377,7 @@ contains
       width = 0.0_wp
       work = 0.0_wp
       node = [(edge - side*i, i=1, 3)]
-      if (ends_with_body(model, edge, side) .or. .not. all(in_contact(state%status(node)))) return
+      if (ends_with_body(model, state, edge, side) .or. .not. all(in_contact(state%status(node)))) return
       limit = model%static_friction(node)*state%fields%pressure(node)
       ! A peak of the pressure next to the edge (rounded punches): only nodes outside it follow the line.
       if (limit(3)**2 - limit(2)**2 < 0.5_wp*(limit(2)**2 - limit(1)**2)) then

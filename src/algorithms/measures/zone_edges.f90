@@ -181,8 +181,8 @@ contains
       do i = 1, size(zones)
          patches(i)%first = zones(i)%first
          patches(i)%last = zones(i)%last
-         patches(i)%left_ends = ends_with_body(model, zones(i)%first, -1)
-         patches(i)%right_ends = ends_with_body(model, zones(i)%last, 1)
+         patches(i)%left_ends = ends_with_body(model, state, zones(i)%first, -1)
+         patches(i)%right_ends = ends_with_body(model, state, zones(i)%last, 1)
          patches(i)%left_power = contact_power(model, state, zones(i)%first, -1)
          patches(i)%right_power = contact_power(model, state, zones(i)%last, 1)
          call find_contact_edge(model, state, -1, patches(i))
@@ -403,7 +403,9 @@ contains
       call find_distance(straightened(samples, merge(patch%right_power, patch%left_power, side > 0)), distance, error, solved)
       rises = .false.
       if (patch%last > patch%first) rises = state%fields%pressure(outermost) >= state%fields%pressure(outermost - side)
-      call end_with_surface(model, outermost, side, rises, solved, distance, error, ends)
+      ends = .false.
+      if (.not. is_at_seam(model, state, outermost, side)) &
+         call end_with_surface(model, outermost, side, rises, solved, distance, error, ends)
       if (side < 0) then
          patch%left = model%arc(outermost) - model%width(outermost)*distance
          patch%left_error = model%width(outermost)*error
@@ -1006,15 +1008,27 @@ contains
       found = abs(distance - 0.5_wp) <= 1.0_wp
    end subroutine find_zero
 
-   !> Whether the surface of a body ends with the interval of a node, on `side` (-1 left, 1 right).
-   pure logical function ends_with_body(model, node, side)
+   !> Whether the surfaces repeat beyond a node on `side` (-1 left, 1 right), which is open there: no end of a surface.
+   pure logical function is_at_seam(model, state, node, side)
       type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
+      integer, intent(in) :: node, side
+
+      is_at_seam = model%repeats_beyond(node, side)
+      if (is_at_seam) is_at_seam = .not. in_contact(state%status(merge(1, model%nodes(), side > 0)))
+   end function is_at_seam
+
+   !> Whether the surface of a body ends with the interval of a node, on `side` (-1 left, 1 right).
+   pure logical function ends_with_body(model, state, node, side)
+      type(contact_model_type), intent(in) :: model
+      type(contact_state_type), intent(in) :: state
       integer, intent(in) :: node, side
       real(wp) :: half
 
       half = 0.5_wp*model%width(node)
       ends_with_body = model%scene%touchable(model%arc(node) + side*half*(1.0_wp - visible)) .and. &
-                       .not. model%scene%touchable(model%arc(node) + side*half*(1.0_wp + visible))
+                       .not. model%scene%touchable(model%arc(node) + side*half*(1.0_wp + visible)) .and. &
+                       .not. is_at_seam(model, state, node, side)
    end function ends_with_body
 
 end module mfv_zone_edges

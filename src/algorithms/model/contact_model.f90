@@ -24,7 +24,7 @@ module mfv_contact_model
    implicit none
    private
    public :: contact_model_type, new_contact_model, adapt_model, choose_mesh, can_choose_mesh, has_touchable_node, &
-             intervals_round, needs_equal_intervals
+             intervals_round, needs_equal_intervals, gap_at
 
    type :: contact_model_type
       type(scene_type) :: scene

@@ -11,7 +11,8 @@ module mfv_extreme_states
    use mfv_stress_search, only: largest_type
    implicit none
    private
-   public :: note_extremes, complete_extremes, find_extremes, find_present_tension, find_largest_of_history
+   public :: note_extremes, complete_extremes, find_extremes, find_present_tension, find_largest_of_history, &
+             has_largest_tension
 
    !> An estimate is not smaller than this part of a stress that is among the largest.
    real(wp), parameter :: least_estimate = 0.85_wp
@@ -140,6 +141,28 @@ contains
          call search(self, first_of_von_mises(self, i), candidate_von_mises(i), extremes)
       end do
    end subroutine find_extremes
+
+   !> Whether the last state may have the largest tension of the body number `side` over the history or its last cycle.
+   pure logical function has_largest_tension(self, side) result(has)
+      class(run_state_type), intent(in) :: self
+      integer, intent(in) :: side
+
+      if (self%ends_with_cycle()) then
+         has = is_among(self%cycles(self%cycle_count)%extremes)
+      else
+         has = is_among(self%extremes)
+      end if
+
+   contains
+
+      pure logical function is_among(extremes)
+         type(load_extremes_type), intent(in) :: extremes
+
+         associate (row => extremes%row(:, candidate_tension(side)), estimate => extremes%estimate(:, candidate_tension(side)))
+            is_among = any(row == extremes%last_row .and. estimate >= least_estimate*maxval(estimate))
+         end associate
+      end function is_among
+   end function has_largest_tension
 
    !> The largest tension of the lower or `upper` body in the present state: of find_extremes, if it was searched for there.
    !> `available`: see find_largest_tension.
