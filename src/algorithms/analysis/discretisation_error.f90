@@ -21,8 +21,8 @@ module mfv_discretisation_error
    use mfv_observables
    use mfv_observer, only: observer_type, relay_type
    use mfv_profile_sampling, only: largest_jumps, negligible_pressure
-   use mfv_resolution, only: add_unresolved, all_quantities, find_unresolved, is_unresolved, nodes_in, &
-                             poorest_patch, undersampling, unresolved_type
+   use mfv_resolution, only: add_unresolved, all_quantities, find_unresolved, is_prescribed, is_unresolved, &
+                             nodes_in, poorest_patch, undersampling, unresolved_type
    use mfv_scene, only: scene_type
    use mfv_simulation, only: history_none, mark_loading, mark_return, mark_reversal, new_simulation, simulation_type, &
                              states_steps
@@ -98,7 +98,8 @@ contains
          estimate%coarser_nodes = nodes(2:)
          do place = 1, observable_count
             if (observables(place)%error == error_none .or. ieee_is_nan(values(place, 1))) cycle
-            if (is_unresolved(unresolved, trim(observables(place)%name))) then
+            if (is_unresolved(unresolved, trim(observables(place)%name)) .and. &
+                .not. is_prescribed(simulation, trim(observables(place)%name))) then
                estimate%bar(place) = unresolved_bar(values(place, :))
             else if (is_there(simulation%contact%model, place, values, allowances(place, :))) then
                associate (behaviour => observables(place)%error)

@@ -25,7 +25,7 @@ module mfv_resolution
    implicit none
    private
    public :: find_unresolved, unresolved_type, add_unresolved, is_unresolved, all_quantities, undersampling, poorest_patch, &
-             fewest_patch_nodes, find_unresolved_observables, refinement_for_layers, nodes_in
+             fewest_patch_nodes, find_unresolved_observables, refinement_for_layers, nodes_in, is_prescribed
 
    !> What a mesh does not resolve.
    type :: unresolved_type
@@ -55,6 +55,7 @@ contains
          call check_beyond_mesh(simulation, unresolved)
       end if
       call check_surface_ends(simulation, unresolved)
+      call check_fall(simulation, unresolved)
       call check_slip_zones(simulation, unresolved)
       call check_largest_shear(simulation, unresolved)
       call check_stick_zones(simulation, unresolved)
@@ -192,11 +193,18 @@ contains
       character(len=240) :: names
 
       names = 'contact_half_width contact_length peak_pressure approach extremes'
-      if (simulation%contact%model%tangential) names = trim(names)//' shift stick_ratio peak_shear dissipation'// &
-                                                       tensions(simulation)
+      if (simulation%contact%model%tangential) names = trim(names)//' '//quantities_of_shear(simulation)
+   end function all_quantities
+
+   !> Those of them that depend on friction.
+   function quantities_of_shear(simulation) result(names)
+      type(simulation_type), intent(in) :: simulation
+      character(len=160) :: names
+
+      names = 'shift stick_ratio peak_shear dissipation extremes'//tensions(simulation)
       if (simulation%cycle_count > 0) names = trim(names)//' cycle_dissipation tangential_stiffness '// &
                                               'secant_stiffness loss_factor turning_points'
-   end function all_quantities
+   end function quantities_of_shear
 
    !> Names of the tensions of the bodies that have any, after blanks and padded with them.
    function tensions(simulation) result(names)
@@ -566,6 +574,33 @@ contains
          call add_unresolved(unresolved, names, 'the contact reaches the end of a surface, where the pressure has no limit', &
                              'extend the surface, or round its end')
    end subroutine check_surface_ends
+
+   !> Friction that falls at once when a node begins to slip, or over less slip than intervals resolve. Over a slip D it falls within
+   !> a length M D/((mu_s - mu_k) p0) next to a stick zone, with the modulus M and the largest pressure p0 (docs/theory.md).
+   subroutine check_fall(simulation, unresolved)
+      type(simulation_type), intent(in) :: simulation
+      type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
+      !> Intervals within that length from which on results converge.
+      integer, parameter :: enough = 10
+      character(:), allocatable :: why, remedy
+      real(wp) :: length, drop
+
+      associate (model => simulation%contact%model, friction => simulation%contact%model%scene%friction, &
+                 state => simulation%contact%state)
+         if (.not. (model%tangential .and. allocated(friction%law)) .or. .not. any(state%friction_work > 0.0_wp)) return
+         drop = maxval((model%static_friction - model%kinetic_friction)*state%fields%pressure)
+         if (.not. drop > 0.0_wp .or. friction%law%slip_of_fall() >= huge(length)) return
+         length = model%compliance%modulus/model%compliance%shear_ratio*friction%law%slip_of_fall()/drop
+         if (length >= contact_interval(model, state)) return
+         why = 'stick zones under static and kinetic friction depend on the mesh, however fine'
+         remedy = "compare them on equal intervals only, or use law='weakening'"
+         if (length > 0.0_wp) then
+            why = 'friction falls by slips of weakening_distance within '//to_text(length, 2)//', less than an interval'
+            remedy = 'use intervals of '//to_text(length/enough, 2)//', or a longer weakening_distance'
+         end if
+         call add_unresolved(unresolved, quantities_of_shear(simulation), why, remedy)
+      end associate
+   end subroutine check_fall
 
    !> Slip zones with too few nodes.
    subroutine check_slip_zones(simulation, unresolved)

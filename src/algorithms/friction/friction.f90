@@ -124,7 +124,7 @@ contains
       class(friction_type), intent(in) :: self
 
       converges = .true.
-      if (allocated(self%law)) converges = self%law%converges
+      if (allocated(self%law)) converges = self%law%slip_of_fall() > 0.0_wp
    end function converges
 
    !> Whether it is Coulomb's law with a uniform coefficient, as closed forms assume.

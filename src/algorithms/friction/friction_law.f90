@@ -63,8 +63,6 @@ module mfv_friction_law
       logical :: sticks = .true.
       !> Whether |tau| drops when a node begins to slip: it relaxes at a fixed load, along a path of its own.
       logical :: drops = .false.
-      !> Whether results converge with the mesh.
-      logical :: converges = .true.
       !> Whether it has memory, and its own events.
       logical :: has_memory = .false., has_events = .false.
       !> Fraction of the limit at which a holding node slips.
@@ -88,6 +86,7 @@ module mfv_friction_law
       procedure :: release_rate
       procedure :: can_become_unstable
       procedure :: release
+      procedure :: slip_of_fall
       !> Certificate and messages.
       procedure :: defect
       procedure :: wrong_motion
@@ -225,6 +224,14 @@ contains
 
       can_become_unstable = .false.
    end function can_become_unstable
+
+   !> Slip over which the coefficient falls from its static to its kinetic value, length: 0 at once, so that results do not
+   !> converge with the mesh; huge() where it does not fall.
+   pure real(wp) function slip_of_fall(self)
+      class(friction_law_type), intent(in) :: self
+
+      slip_of_fall = merge(0.0_wp, huge(1.0_wp), self%drops)
+   end function slip_of_fall
 
    !> Begin the stress drop of such a node, which now slips.
    pure subroutine release(self, point, memory)

@@ -20,8 +20,7 @@ module mfv_friction_static_kinetic
    !> The law.
    type(static_kinetic_law_type), parameter :: static_kinetic_law = &
                                                static_kinetic_law_type(name='static_kinetic', has_two_coefficients=.true., &
-                                                                       drops=.true., converges=.false., has_memory=.true., &
-                                                                       has_events=.true.)
+                                                                       drops=.true., has_memory=.true., has_events=.true.)
 
 contains
 

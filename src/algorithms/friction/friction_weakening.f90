@@ -31,6 +31,7 @@ module mfv_friction_weakening
       procedure :: pass_event
       procedure :: remember
       procedure :: can_become_unstable
+      procedure :: slip_of_fall
    end type weakening_law_type
 
    !> The law, without its parameters.
@@ -187,5 +188,11 @@ contains
                             (abs(point%shear) >= point%static*point%pressure*(1.0_wp - significant) .or. &
                              (slips(status) .and. point%memory(slipped) < self%distance))
    end function can_become_unstable
+
+   pure real(wp) function slip_of_fall(self)
+      class(weakening_law_type), intent(in) :: self
+
+      slip_of_fall = self%distance
+   end function slip_of_fall
 
 end module mfv_friction_weakening

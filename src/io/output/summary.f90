@@ -48,6 +48,8 @@ contains
             call add_line(text, 'tangential force', amount(fields, 'tangential_force')//', shift '//amount(fields, 'shift'))
             call add_line(text, 'dissipation', amount(fields, 'dissipation'))
          end if
+         if (model%scene%wear%acts()) call add_line(text, 'wear', 'worn area '//amount(seen, 'worn_area')//', largest depth '// &
+                                                    amount(seen, 'wear_depth')//', '//amount(seen, 'cycles')//' cycles')
          if (simulation%cycle_count > 0) call add_last_cycle(text, seen, simulation%cycles(simulation%cycle_count)%walks())
          do i = 1, motion_count
             if (.not. (motions(i)%optional .and. model%moves(i))) cycle
@@ -264,14 +266,14 @@ contains
       type(field_type), intent(in) :: seen(:)
       type(case_type), intent(in) :: case
       type(simulation_type), intent(in) :: simulation
-      character(*), parameter :: names(32) = [character(31) :: &
+      character(*), parameter :: names(34) = [character(31) :: &
                  'largest_lower_tension', 'largest_upper_tension', 'largest_pressure', 'largest_shear', 'largest_lower_von_mises', &
                                     'largest_upper_von_mises', 'largest_lower_interface_tension', 'largest_lower_interface_shear', &
                  'largest_upper_interface_tension', 'largest_upper_interface_shear', 'largest_slip_range', 'smallest_stick_ratio', &
                       'largest_stick_ratio', 'contact_length', 'contact_half_width', 'stick_ratio', 'peak_pressure', 'peak_shear', &
                          'normal_force', 'approach', 'tangential_force', 'shift', 'dissipation', 'lower_tension', 'upper_tension', &
                                          'cycle_dissipation', 'tangential_stiffness', 'secant_stiffness', 'loss_factor', 'moment', &
-                                              'rotation', 'creepage']
+                                              'rotation', 'creepage', 'worn_area', 'wear_depth']
       !> The first ones are extremes over the last cycle, rows or steps.
       integer, parameter :: extremes = 13
       character(*), parameter :: words(size(names)) = [character(38) :: &
@@ -281,7 +283,7 @@ contains
             'smallest stick ratio', 'largest stick ratio', 'contact length', 'contact half-width', 'stick ratio', 'peak pressure', &
                     'peak shear', 'normal force', 'approach', 'tangential force', 'shift', 'dissipation', 'tension of lower body', &
                 'tension of upper body', 'cycle dissipation', 'tangential stiffness', 'secant stiffness', 'loss factor', 'moment', &
-                                                       'rotation', 'creepage']
+                                                       'rotation', 'creepage', 'worn area', 'wear depth']
       type(field_type), allocatable :: fields(:)
       character(:), allocatable :: meshes, value, percent
       integer :: i, first
@@ -320,9 +322,6 @@ contains
       end do
       call add_line(text, 'error estimate', 'from meshes with '//meshes//' nodes in place of '// &
                     to_text(simulation%estimate%nodes))
-      if (.not. case%scene%friction%converges()) &
-         call add_line(text, 'error estimate', 'static and kinetic friction does not converge with the '// &
-                       'mesh: these bars are not bounds')
    end subroutine add_estimate
 
    !> A number of things: 1 event, 2 events; padded with blanks.
