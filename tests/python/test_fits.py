@@ -271,3 +271,13 @@ def test_what_is_refused(bore: float, mesh: dict[str, Any], step: dict[str, floa
     with pytest.raises(errors.InputError) as refusal:
         mfv.run(mfv.Scene(*bodies, mesh=mfv.Mesh(**mesh), steps=[mfv.Step(**step)]))
     assert message in str(refusal.value)
+
+
+def test_a_contact_that_ends_where_the_mesh_does_has_no_corner_there() -> None:
+    """A load that turns around a pin nearly without friction only turns its stresses: the largest tension stays (its mesh does not turn)."""
+    angles = np.radians(np.arange(0.0, 360.0, 7.0))
+    steps = [mfv.Step(normal_force=50.0 * np.cos(angle), tangential_force=50.0 * np.sin(angle)) for angle in angles]
+    scene = fit(*steps, nodes=79, friction=mfv.Friction.coulomb(1e-3), output=mfv.Output(states="steps"))
+    result = mfv.run(scene, check=True)
+    tension = [stress(result, 0.0, -1.0, step=step).tension.value for step in range(1, len(steps) + 1)]
+    assert np.ptp(tension) < 0.02 * np.mean(tension)

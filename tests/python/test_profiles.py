@@ -244,3 +244,19 @@ def test_a_text_with_positions_out_of_order_is_refused(tmp_path: Path, rows: str
     path.write_text("x,z\n" + rows)
     with pytest.raises(errors.InputError, match="trace.csv:4: x must increase from line to line, or decrease; sort the rows"):
         profiles.read(path)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_patches_that_the_mesh_misses(seed: int) -> None:
+    """Bumps of random heights and places: with a short mesh around one of them the others overlap, which is said; else all bars hold."""
+    random = np.random.default_rng(seed)
+    places, heights = np.array([-1.0, 0.0, 1.3]) + random.uniform(-0.2, 0.2, 3), random.uniform(0.0, 4e-3, 3)
+    x = np.linspace(-2.0, 2.0, 401)
+    recess = 0.1 * np.min([(x - place) ** 2 + height for place, height in zip(places, heights)], axis=0)
+    bodies = {"lower": Body.half_plane(youngs_modulus=2e5, poisson_ratio=0.3), "upper": Body.profile(x, recess, rigid=True)}
+    alone = mfv.run(Scene(**bodies, mesh=Mesh(nodes=101, half_width=abs(places[1]) + 0.4), steps=[Step(normal_force=2000.0)]))
+    wide = mfv.run(Scene(**bodies, mesh=Mesh(nodes=401, half_width=2.0), steps=[Step(normal_force=2000.0)]))
+    missed = wide.observables.patches > alone.observables.patches or wide.observables.contact_length > 1.1 * alone.observables.contact_length
+    assert missed == any("overlap beyond the mesh" in warning for warning in alone.warnings)
+    assert missed == ("peak_pressure" in alone.unresolved)
+    assert not any("overlap" in warning for warning in wide.warnings)

@@ -9,7 +9,7 @@ module mfv_state_interior
    use mfv_motions, only: bulk_motions
    use mfv_stress_search, only: largest_tension, largest_type, largest_von_mises
    use mfv_tolerances, only: certified
-   use mfv_zone_edges, only: find_patches, find_zones_below_limit, patch_type, zone_type
+   use mfv_zone_edges, only: find_patches, find_zones_below_limit, nodes_across, patch_type, zone_type
    implicit none
    private
    public :: state_interior, find_edges_at_nodes, find_largest_tension, find_largest_von_mises, surface_stress_at
@@ -122,16 +122,33 @@ contains
       call find_patches(model, state, patches)
       do i = 1, size(patches)
          associate (patch => patches(i))
-            if (patch%last > patch%first) contact_edge([patch%first, patch%last]) = [patch%left, patch%right]
+            call store(contact_edge, patch%first, patch%last, patch%left, patch%right)
             if (.not. model%scene%friction%is_coulomb()) cycle
             call find_zones_below_limit(model, state, patch, zones)
             do j = 1, size(zones)
                associate (zone => zones(j))
-                  if (zone%last > zone%first) stick_edge([zone%first, zone%last]) = [zone%left, zone%right]
+                  call store(stick_edge, zone%first, zone%last, zone%left, zone%right)
                end associate
             end do
          end associate
       end do
+
+   contains
+
+      !> Both edges of a zone; of one with a single node that which is not where it continues at the other end of the mesh.
+      subroutine store(edges, first, last, left, right)
+         real(wp), intent(inout) :: edges(:)
+         integer, intent(in) :: first, last
+         real(wp), intent(in) :: left, right
+
+         if (last > first) then
+            edges([first, last]) = [left, right]
+         else if (nodes_across(model, state, first, -1) > 0) then
+            edges(first) = right
+         else if (nodes_across(model, state, first, 1) > 0) then
+            edges(first) = left
+         end if
+      end subroutine store
    end subroutine find_edges_at_nodes
 
 end module mfv_state_interior

@@ -24,7 +24,7 @@ module mfv_zone_edges
    use mfv_tolerances, only: certified, significant, visible
    implicit none
    private
-   public :: zone_type, patch_type, zone_edges_type, find_patches, find_zone_edges, outermost_edges, largest_shear, &
+   public :: nodes_across, zone_type, patch_type, zone_edges_type, find_patches, find_zone_edges, outermost_edges, largest_shear, &
              find_zones_below_limit, zones_of, held, ends_with_body, is_beyond_corner, rises_at_end, slipping_run, has_known_error
 
    !> A zone of neighbouring nodes, from `first` to `last`, and its edges: arc lengths from the origin of x, positive to the
@@ -395,17 +395,23 @@ contains
       type(edge_samples_type) :: samples
       real(wp) :: distance, error
       logical :: solved, rises, ends
-      integer :: outermost
+      integer :: outermost, other
 
       outermost = merge(patch%last, patch%first, side > 0)
-      samples = sampled(model, state%fields%pressure, outermost, merge(patch%first, patch%last, side > 0))
-      samples%is_regular = has_known_error(model, outermost, samples%number)
-      call find_distance(straightened(samples, merge(patch%right_power, patch%left_power, side > 0)), distance, error, solved)
-      rises = .false.
-      if (patch%last > patch%first) rises = state%fields%pressure(outermost) >= state%fields%pressure(outermost - side)
-      ends = .false.
-      if (.not. is_at_seam(model, state, outermost, side)) &
-         call end_with_surface(model, outermost, side, rises, solved, distance, error, ends)
+      other = merge(patch%first, patch%last, side > 0)
+      ends = nodes_across(model, state, outermost, side) > 0
+      if (ends) then
+         distance = 0.5_wp
+         error = 0.0_wp
+      else
+         samples = sampled(model, state%fields%pressure, outermost, other, side, nodes_across(model, state, other, -side))
+         samples%is_regular = has_known_error(model, outermost, samples%number)
+         call find_distance(straightened(samples, merge(patch%right_power, patch%left_power, side > 0)), distance, error, solved)
+         rises = .false.
+         if (patch%last > patch%first) rises = state%fields%pressure(outermost) >= state%fields%pressure(outermost - side)
+         if (.not. model%repeats_beyond(outermost, side)) &
+            call end_with_surface(model, outermost, side, rises, solved, distance, error, ends)
+      end if
       if (side < 0) then
          patch%left = model%arc(outermost) - model%width(outermost)*distance
          patch%left_error = model%width(outermost)*error
@@ -569,7 +575,7 @@ contains
          last = last - side
       end if
       power = 0.5_wp - side*exponent_shift(model, next, direction*model%kinetic_friction(next))
-      samples = sampled(model, lack, last, other)
+      samples = sampled(model, lack, last, other, side, 0)
       samples%is_regular = has_known_error(model, last, samples%number)
       call find_distance_of_lack(samples, power, distance, error)
       edge = model%arc(last) + side*model%width(last)*distance
@@ -665,33 +671,35 @@ contains
       if (number == 2) has_older_edges = abs(sum(target)) > visible*maxval(abs(target))
    end function has_older_edges
 
-   !> The outermost values of a traction in a zone from node `outermost` to node `other`; shape of the traction (nodes).
-   pure type(edge_samples_type) function sampled(model, traction, outermost, other) result(samples)
+   !> The outermost values of a traction in a zone from node `outermost`, with its edge on `side`, to node `other` and, where the
+   !> surfaces repeat, to the `across` nodes at the other end of the mesh; shape of the traction (nodes).
+   pure type(edge_samples_type) function sampled(model, traction, outermost, other, side, across) result(samples)
       type(contact_model_type), intent(in) :: model
       real(wp), intent(in) :: traction(:)
-      integer, intent(in) :: outermost, other
+      integer, intent(in) :: outermost, other, side, across
       real(wp) :: total
-      integer :: i, side
+      integer :: i, node
 
-      side = merge(1, -1, other >= outermost)
-      samples%zone = abs(other - outermost) + 1
+      samples%zone = abs(other - outermost) + 1 + across
       samples%number = min(samples%zone, most_samples)
       associate (unit => model%width(outermost))
          do i = 0, samples%number - 1
-            samples%value(i) = traction(outermost + side*i)
-            samples%inwards(i) = abs(model%arc(outermost + side*i) - model%arc(outermost))/unit
+            node = modulo(outermost - side*i - 1, size(traction)) + 1
+            samples%value(i) = traction(node)
+            samples%inwards(i) = abs(model%arc(node) - model%arc(outermost))/unit
+            if (i > abs(other - outermost)) samples%inwards(i) = i
          end do
          samples%is_integral = allocated(model%scene%mesh%ends)
          samples%traction = samples%value(:samples%number - 1)
          if (.not. samples%is_integral) return
-         samples%traction = traction(outermost:other:side)
-         samples%width = model%width(outermost:other:side)/unit
-         samples%beyond = model%width(min(max(outermost - side, 1), model%nodes()))/unit
+         samples%traction = traction(outermost:other:-side)
+         samples%width = model%width(outermost:other:-side)/unit
+         samples%beyond = model%width(min(max(outermost + side, 1), model%nodes()))/unit
          total = 0.0_wp
          do i = 0, samples%number - 1
-            total = total + samples%value(i)*model%width(outermost + side*i)/unit
+            total = total + samples%value(i)*model%width(outermost - side*i)/unit
             samples%value(i) = total
-            samples%inwards(i) = samples%inwards(i) + 0.5_wp*model%width(outermost + side*i)/unit
+            samples%inwards(i) = samples%inwards(i) + 0.5_wp*model%width(outermost - side*i)/unit
          end do
       end associate
    end function sampled
@@ -1008,15 +1016,21 @@ contains
       found = abs(distance - 0.5_wp) <= 1.0_wp
    end subroutine find_zero
 
-   !> Whether the surfaces repeat beyond a node on `side` (-1 left, 1 right), which is open there: no end of a surface.
-   pure logical function is_at_seam(model, state, node, side)
+   !> Number of nodes in which a contact that ends with the mesh at a node on `side` (-1 left, 1 right) continues at its other end,
+   !> where the surfaces repeat.
+   pure integer function nodes_across(model, state, node, side) result(nodes)
       type(contact_model_type), intent(in) :: model
       type(contact_state_type), intent(in) :: state
       integer, intent(in) :: node, side
+      integer, allocatable :: order(:)
+      integer :: i, n
 
-      is_at_seam = model%repeats_beyond(node, side)
-      if (is_at_seam) is_at_seam = .not. in_contact(state%status(merge(1, model%nodes(), side > 0)))
-   end function is_at_seam
+      nodes = 0
+      if (.not. model%repeats_beyond(node, side)) return
+      n = model%nodes()
+      order = [(merge(i, n + 1 - i, side > 0), i=1, n)]
+      nodes = findloc([in_contact(state%status(order)), .false.], .false., dim=1) - 1
+   end function nodes_across
 
    !> Whether the surface of a body ends with the interval of a node, on `side` (-1 left, 1 right).
    pure logical function ends_with_body(model, state, node, side)
@@ -1028,7 +1042,7 @@ contains
       half = 0.5_wp*model%width(node)
       ends_with_body = model%scene%touchable(model%arc(node) + side*half*(1.0_wp - visible)) .and. &
                        .not. model%scene%touchable(model%arc(node) + side*half*(1.0_wp + visible)) .and. &
-                       .not. is_at_seam(model, state, node, side)
+                       (nodes_across(model, state, node, side) > 0 .or. .not. model%repeats_beyond(node, side))
    end function ends_with_body
 
 end module mfv_zone_edges
