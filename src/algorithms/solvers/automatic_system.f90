@@ -23,7 +23,6 @@ module mfv_automatic_system
       type(krylov_system_type), allocatable, private :: krylov
    contains
       procedure :: solve
-      procedure :: takes_fronts
    end type automatic_system_type
 
 contains
@@ -93,13 +92,5 @@ contains
       most = merge(self%most_one_by_one, self%most, one_by_one)
       takes_iteration = contact > merge(most/2, most, self%iterates .and. .not. one_by_one)
    end function takes_iteration
-
-   !> See mfv_contact_system.
-   logical function takes_fronts(self, contact)
-      class(automatic_system_type), intent(in) :: self
-      integer, intent(in) :: contact
-
-      takes_fronts = takes_iteration(self, contact, .false.)
-   end function takes_fronts
 
 end module mfv_automatic_system
