@@ -136,13 +136,14 @@ contains
       type(constraints_type), intent(in) :: constraints
       logical, intent(in) :: at_fronts
       real(wp), allocatable :: weights(:)
+      logical :: is_outer(self%nodes)
       integer :: i, outer
 
-      if (.not. allocated(constraints%front)) return
+      is_outer = beside_front(constraints)
       associate (subsystem => self%subsystem(subsystem_of(self, a_shear, 0)), front => constraints%front)
          allocate (weights(subsystem%unknowns))
          do outer = 1, self%nodes
-            if (.not. any(front%node == outer)) cycle
+            if (.not. is_outer(outer)) cycle
             weights = 0.0_wp
             weights(self%place(outer, a_shear)) = 1.0_wp
             do i = 1, self%nodes
@@ -152,6 +153,19 @@ contains
          end do
       end associate
    end subroutine spread_slip
+
+   !> The nodes whose slip others depend on, shape (nodes).
+   pure function beside_front(constraints) result(beside)
+      type(constraints_type), intent(in) :: constraints
+      logical :: beside(size(constraints%status))
+      integer :: i
+
+      beside = .false.
+      if (.not. allocated(constraints%front)) return
+      do i = 1, size(beside)
+         if (constraints%front(i)%node > 0) beside(constraints%front(i)%node) = .true.
+      end do
+   end function beside_front
 
    !> Whether a force is prescribed that nothing balances: without contact, or a moment on one node.
    pure logical function undetermined(self, model, constraints)
@@ -237,11 +251,7 @@ contains
       wanted = .false.
       wanted(:self%nodes, a_pressure) = in_contact(constraints%status)
       wanted(:self%nodes, a_shear) = in_contact(constraints%status) .and. constraints%status /= node_frictionless
-      if (allocated(constraints%front)) then
-         do i = 1, self%nodes
-            if (constraints%front(i)%node > 0) wanted(constraints%front(i)%node, a_shear) = .true.
-         end do
-      end if
+      wanted(:self%nodes, a_shear) = wanted(:self%nodes, a_shear) .or. beside_front(constraints)
       wanted(motion_approach, a_motion) = any(wanted(:, a_pressure))
       wanted(motion_shift, a_motion) = any(wanted(:, a_shear))
       ! A motion that only slides (a rotation with radial normals) is determined by friction alone. Bulk stresses are known.
@@ -267,8 +277,9 @@ contains
       integer :: i, subsystem
 
       subsystem = subsystem_of(self, a_shear, 0)
-      going = self%constraint_of(:self%nodes, a_shear) > 0 .and. &
-              .not. (wanted(:self%nodes, a_shear) .and. constraints%status /= node_stick)
+      going = self%constraint_of(:self%nodes, a_shear) > 0
+      where (going) going = .not. wanted(:self%nodes, a_shear) .or. constraints%status == node_stick .or. &
+                            (wanted(:self%nodes, a_pressure) .neqv. self%place(:self%nodes, a_pressure) > 0)
       if (2*count(going) > self%subsystem(subsystem)%system%constraints) call self%subsystem(subsystem)%system%postpone()
       do i = 1, self%nodes
          if (going(i)) call release(self, subsystem, self%constraint_of(i, a_shear))
