@@ -46,7 +46,8 @@ contains
       constraints%load(motion_rotation) = load_type(control_displacement)
    end subroutine partly_stuck
 
-   !> The two outermost nodes of every stick zone hold in part at the slip of the node beyond it. `opened`: slipping nodes open first.
+   !> The two outermost nodes of every stick zone hold in part at the slip of the node beyond it. `opened`: slipping nodes open
+   !> first.
    subroutine add_fronts(constraints, opened)
       type(constraints_type), intent(inout) :: constraints
       logical, intent(in) :: opened

@@ -231,8 +231,8 @@ contains
       self%stale = .true.
    end subroutine change_constraint
 
-   !> Let the unknown of constraint `number` act on all rows with these `weights`, shape (rows), instead of on its slot alone (weight
-   !> 1). Unknowns and constraints can be changed only while all of them act on their slots alone.
+   !> Let the unknown of constraint `number` act on all rows with these `weights`, shape (rows), instead of on its slot alone
+   !> (weight 1). Unknowns and constraints can be changed only while all of them act on their slots alone.
    subroutine spread(self, number, weights)
       class(constrained_inverse_type), intent(inout) :: self
       integer, intent(in) :: number

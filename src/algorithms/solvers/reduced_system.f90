@@ -9,9 +9,9 @@
 !> symmetric by reciprocity (for tractions times the widths of the nodes, where these differ). Its inverse is stored, and updated
 !> when nodes enter or leave the contact. Slipping and creeping nodes and displacement control are constraints with an unknown slip
 !> or force (mfv_constrained_inverse). A node that begins or ceases to slip then costs a few vector operations, and a reversal,
-!> where all nodes stick again, nothing. The unknown slip of a node beside a front is spread on the rows of the nodes that hold at it
-!> (front_type); if it is open, it has a shear traction that is constrained to zero. The residuals of all rows are checked after every solve with the full compliance. If they
-!> are too large, the solution is refined; if that fails, the inverse is recomputed.
+!> where all nodes stick again, nothing. The unknown slip of a node beside a front also acts on the rows of the nodes that hold at
+!> it (front_type); if it is open, it has a shear traction that is constrained to zero. The residuals of all rows are checked after
+!> every solve with the full compliance. If they are too large, the solution is refined; if that fails, the inverse is recomputed.
 !>
 !> Without the effect of shear on the normal problem (Goodman's coupling, none, no friction) the two problems are solved one after
 !> the other, each with its own inverse. Goodman's coupling with rotation or radial normals is not symmetric and uses the augmented

@@ -23,7 +23,7 @@ module mfv_sticking_front
 
 contains
 
-   !> The fronts for statuses at the end of an increment. `held`: nodes that hold from its start; `open`: nodes that were open there;
+   !> The fronts for statuses at the end of an increment. `held`: nodes that hold from its start; `open`: nodes that were open then;
    !> `start`: the fields there; `gap`: the gaps there or, if `in_proportion`, before deformation, length; `ahead`: how far nodes
    !> slip after the end of the increment until they stick, length; `hold`: the slip at which nodes hold, length; at a front it
    !> becomes what is added to the part in proportion to the slip of another node (front_type); all shape (nodes).
