@@ -5,6 +5,7 @@ module test_solver_comparison
    use mfv_contact_fields, only: contact_fields_type, new_contact_fields
    use mfv_contact_model, only: contact_model_type
    use mfv_contact_system
+   use mfv_friction_law, only: friction_row_type
    use mfv_kinds, only: wp
    use mfv_motions, only: motion_approach, motion_shift, motion_rotation, control_force, control_displacement
    use mfv_node_status
@@ -12,7 +13,7 @@ module test_solver_comparison
    use mfv_simulation, only: history_none, new_simulation, simulation_type
    implicit none
    private
-   public :: partly_stuck, difference, compare_solves, compare_runs, uneven_matrix_body, force, mu
+   public :: partly_stuck, add_fronts, difference, compare_solves, compare_runs, uneven_matrix_body, force, mu
 
    real(wp), parameter :: force = 1.0e-3_wp, mu = 0.7_wp
 
@@ -44,6 +45,34 @@ contains
       constraints%load(motion_shift) = load_type(control_force, 0.2_wp*force, 0.4_wp*force)
       constraints%load(motion_rotation) = load_type(control_displacement)
    end subroutine partly_stuck
+
+   !> The two outermost nodes of every stick zone hold in part at the slip of the node beyond it. `opened`: slipping nodes open
+   !> first.
+   subroutine add_fronts(constraints, opened)
+      type(constraints_type), intent(inout) :: constraints
+      logical, intent(in) :: opened
+      real(wp), parameter :: weight(2) = [0.6_wp, 0.2_wp]
+      integer :: i, j
+
+      if (.not. allocated(constraints%front)) allocate (constraints%front(size(constraints%status)))
+      constraints%front = front_type()
+      if (opened) then
+         where (slips(constraints%status))
+            constraints%status = node_open
+            constraints%row = friction_row_type()
+            constraints%offset_rate = 0.0_wp
+         end where
+      end if
+      associate (stuck => constraints%status == node_stick, front => constraints%front)
+         do i = 3, size(stuck) - 2
+            if (stuck(i)) cycle
+            do j = 1, 2
+               if (all(stuck(i + 1:i + j))) front(i + j) = front_type(i, weight(j))
+               if (all(stuck(i - j:i - 1))) front(i - j) = front_type(i, weight(j))
+            end do
+         end do
+      end associate
+   end subroutine add_fronts
 
    !> Largest difference of the tractions, displacements and motions of two fields, relative to the largest of each kind.
    pure real(wp) function difference(one, other)

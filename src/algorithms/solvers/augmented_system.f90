@@ -226,13 +226,13 @@ contains
       end do
    end subroutine add_normal_constraints
 
-   !> Rows s = s0 for stuck nodes, tau - slope*p - stiffness*s = offset for slipping and creeping ones, tau = 0 for the others;
-   !> divided by their largest coefficient.
+   !> Rows s = s0 for stuck nodes, at a front s - weight*s(outer) = s0, tau - slope*p - stiffness*s = offset for slipping and
+   !> creeping ones, tau = 0 for the others; divided by their largest coefficient.
    subroutine add_tangential_constraints(assembly, constraints, state, rate)
       type(assembly_type), intent(inout) :: assembly
       type(constraints_type), intent(in) :: constraints
       type(prescribed_type), intent(in) :: state, rate
-      integer :: i, node, row
+      integer :: i, node, outer, row
       real(wp) :: slope, stiffness, unit
 
       do i = 1, size(assembly%nodes)
@@ -241,6 +241,10 @@ contains
          if (constraints%status(node) == node_stick) then
             assembly%matrix(row, assembly%slip + i) = 1.0_wp
             assembly%right(row, :) = [state%slip(node), rate%slip(node)]/assembly%length
+            if (.not. allocated(constraints%front)) cycle
+            if (constraints%front(node)%node == 0) cycle
+            outer = findloc(assembly%nodes, constraints%front(node)%node, dim=1)
+            assembly%matrix(row, assembly%slip + outer) = -constraints%front(node)%weight
          else if (slips(constraints%status(node)) .or. creeps(constraints%status(node))) then
             slope = constraints%row(node)%slope*assembly%stress/assembly%shear_stress
             stiffness = constraints%row(node)%stiffness*assembly%length/assembly%shear_stress

@@ -23,7 +23,6 @@ module mfv_automatic_system
       type(krylov_system_type), allocatable, private :: krylov
    contains
       procedure :: solve
-      procedure :: takes_fronts
    end type automatic_system_type
 
 contains
@@ -68,8 +67,10 @@ contains
       class(automatic_system_type), intent(inout) :: self
       integer, intent(in) :: contact
       logical, intent(in) :: one_by_one
+      integer :: most
 
-      self%iterates = takes_iteration(self, contact, one_by_one)
+      most = merge(self%most_one_by_one, self%most, one_by_one)
+      self%iterates = contact > merge(most/2, most, self%iterates .and. .not. one_by_one)
       if (self%iterates) then
          if (allocated(self%reduced)) deallocate (self%reduced)
          if (allocated(self%krylov)) return
@@ -82,24 +83,5 @@ contains
          self%reduced%name = 'reduced'
       end if
    end subroutine choose
-
-   !> Whether the next solve is by iteration.
-   logical function takes_iteration(self, contact, one_by_one)
-      class(automatic_system_type), intent(in) :: self
-      integer, intent(in) :: contact
-      logical, intent(in) :: one_by_one
-      integer :: most
-
-      most = merge(self%most_one_by_one, self%most, one_by_one)
-      takes_iteration = contact > merge(most/2, most, self%iterates .and. .not. one_by_one)
-   end function takes_iteration
-
-   !> See mfv_contact_system.
-   logical function takes_fronts(self, contact)
-      class(automatic_system_type), intent(in) :: self
-      integer, intent(in) :: contact
-
-      takes_fronts = takes_iteration(self, contact, .false.)
-   end function takes_fronts
 
 end module mfv_automatic_system

@@ -5,7 +5,8 @@
 !>
 !>     x(slot) - slope x(partner) - stiffness lambda = value.
 !>
-!> With the inverse T of A (mfv_updated_inverse) and its columns Q = T e(slot), the unknowns lambda follow from the small system S
+!> For one solution lambda may also act on other rows, in proportion (spread). With the inverse T of A (mfv_updated_inverse) and its
+!> columns Q = T e(slot), the unknowns lambda follow from the small system S
 !> = Q(slot, :) - slope Q(partner, :) - stiffness, whose inverse is stored and updated too. A constraint costs a column of T and a
 !> number of operations proportional to the entries of S; removing all constraints costs nothing.
 module mfv_constrained_inverse
@@ -40,6 +41,7 @@ module mfv_constrained_inverse
       procedure :: release_all
       procedure :: postpone
       procedure :: change_constraint
+      procedure :: spread
       procedure :: refresh
       procedure :: solve
    end type constrained_inverse_type
@@ -228,6 +230,28 @@ contains
       self%constraint(number)%stiffness = stiffness
       self%stale = .true.
    end subroutine change_constraint
+
+   !> Let the unknown of constraint `number` act on all rows with these `weights`, shape (rows), instead of on its slot alone
+   !> (weight 1). Unknowns and constraints can be changed only while all of them act on their slots alone.
+   subroutine spread(self, number, weights)
+      class(constrained_inverse_type), intent(inout) :: self
+      integer, intent(in) :: number
+      real(wp), intent(in) :: weights(:)
+      real(wp) :: column(size(weights)), row(self%constraints), by_column(self%constraints), pivot
+      integer :: k
+
+      k = self%constraints
+      column = self%columns(:size(weights), number)
+      call self%inverse%multiply(weights, self%columns(:size(weights), number))
+      if (self%stale) return
+      call dgemv('N', k, k, 1.0_wp, self%small, size(self%small, 1), &
+                 functional(self, self%columns(:size(weights), number) - column), 1, 0.0_wp, by_column, 1)
+      pivot = 1.0_wp + by_column(number)
+      self%stale = abs(pivot) < no_pivot*max(1.0_wp, abs(pivot - 1.0_wp))
+      if (self%stale) return
+      row = self%small(number, :k)
+      call dger(k, k, -1.0_wp/pivot, by_column, 1, row, 1, self%small, size(self%small, 1))
+   end subroutine spread
 
    !> Recompute the inverse of `matrix`, shape (unknowns, unknowns), its columns and S. `singular`: it has no inverse.
    subroutine refresh(self, matrix, singular)

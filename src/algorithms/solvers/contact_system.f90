@@ -10,12 +10,10 @@ module mfv_contact_system
    private
    public :: contact_system_type, solver_work_type, load_type, front_type, response_type, constraints_type, prescribed_type, &
              find_prescribed, initial_loads
-   public :: rates_of_loads, rates_at_end, rates_of_fronts, rates_of_derivatives, kinds_of_rates
+   public :: rates_of_loads, rates_at_end, rates_of_derivatives, kinds_of_rates
 
-   !> Kinds of rates: of the loads, of the loads at states of large increments, and with the slip of fronts to the left and right;
-   !> and derivatives with respect to parameters.
-   integer, parameter :: rates_of_loads = 1, rates_at_end = 2, rates_of_fronts(2) = [3, 4], rates_of_derivatives = 5, &
-                         kinds_of_rates = 5
+   !> Kinds of rates: of the loads, of the loads at states of large increments, and derivatives with respect to parameters.
+   integer, parameter :: rates_of_loads = 1, rates_at_end = 2, rates_of_derivatives = 3, kinds_of_rates = 3
 
    !> A controlled load: force (moment) or displacement (rotation), its present value and its rate per unit of load.
    type :: load_type
@@ -29,11 +27,11 @@ module mfv_contact_system
    type(load_type), parameter :: initial_loads(motion_count) = &
                          [(load_type(merge(control_displacement, control_force, motions(motion)%optional)), motion=1, motion_count)]
 
-   !> A stuck node holds at a slip that changes with that of another node, of any status, by the factor `weight`. `node`: that
-   !> node, 0: none; `slip`: its slip at which the stuck node holds at its own `stuck_slip`, length.
+   !> A stuck node holds at its `stuck_slip` plus `weight` times the slip of another `node`, 0: none. That one does not stick; its
+   !> line (row) is zero where it has no friction.
    type :: front_type
       integer :: node = 0
-      real(wp) :: weight = 0.0_wp, slip = 0.0_wp
+      real(wp) :: weight = 0.0_wp
    end type front_type
 
    !> The equality constraints of all nodes (dissertation Table 2.1).
@@ -42,8 +40,7 @@ module mfv_contact_system
       integer, allocatable :: status(:)
       !> Slip s at which a stuck node holds, length, shape (nodes).
       real(wp), allocatable :: stuck_slip(:)
-      !> What the slip of stuck nodes depends on, shape (nodes); not allocated: nothing. Only for solvers that take it
-      !> (takes_fronts).
+      !> What the slip of stuck nodes depends on, shape (nodes); not allocated: nothing.
       type(front_type), allocatable :: front(:)
       !> The lines tau = slope*p + stiffness*s + offset of slipping and creeping nodes (mfv_friction_law), and the rate of
       !> the offset per unit of load; shape (nodes).
@@ -95,7 +92,6 @@ module mfv_contact_system
       logical :: gave_up = .false.
    contains
       procedure(solve_interface), deferred :: solve
-      procedure :: takes_fronts
    end type contact_system_type
 
    abstract interface
@@ -114,14 +110,6 @@ module mfv_contact_system
    end interface
 
 contains
-
-   !> Whether the constraints may have fronts, with a number of nodes in `contact`.
-   logical function takes_fronts(self, contact)
-      class(contact_system_type), intent(in) :: self
-      integer, intent(in) :: contact
-
-      takes_fronts = .false.
-   end function takes_fronts
 
    !> The prescribed values of the state of a model, or (`rates`) of its rates. `prescribed`: its storage is reused.
    pure subroutine find_prescribed(constraints, model, rates, prescribed)

@@ -9,7 +9,7 @@
 !>     C_up p + C_ut tau - a_u y + c (tau - slope p) = c offset  tau = slope*p + stiffness*s + offset, softness c = -1/stiffness
 !>     resultants of p and tau                = P, Q, M          free motions
 !>
-!> The row of a stuck node at a front has w times the slip of another node subtracted on both sides (front_type).
+!> The row of a stuck node at a front has w times the slip of another node subtracted on its left side (front_type).
 !>
 !> The preconditioner is block triangular: pressures by the inverse of C_wp (mfv_krylov_preconditioner), then shear tractions by
 !> that of C_ut after subtracting the effect of these pressures; the free motions follow from a Schur complement of at most three
@@ -65,7 +65,7 @@ module mfv_krylov_system
       real(wp), allocatable :: slope(:)
       !> Softness and slope of the held nodes, shape (held).
       real(wp), allocatable :: softness(:), held_slope(:)
-      !> What the slip of the held nodes depends on, in the units of the system, shape (held); not allocated: nothing.
+      !> What the slip of the held nodes depends on, shape (held); not allocated: nothing.
       type(front_type), allocatable :: front(:)
       !> Whether pressures act on the rows of held nodes.
       logical :: coupled = .false.
@@ -81,7 +81,6 @@ module mfv_krylov_system
       type(reduced_system_type), allocatable :: direct
    contains
       procedure :: solve
-      procedure :: takes_fronts
    end type krylov_system_type
 
    !> Most nodes in contact for the reduced system where the iteration fails: 200 MB.
@@ -93,16 +92,7 @@ module mfv_krylov_system
 
 contains
 
-   !> See mfv_contact_system.
-   logical function takes_fronts(self, contact)
-      class(krylov_system_type), intent(in) :: self
-      integer, intent(in) :: contact
-
-      takes_fronts = .true.
-   end function takes_fronts
-
-   !> See mfv_contact_system. Where the iteration fails, the reduced system takes over, unless there are fronts or its matrix would
-   !> be too large.
+   !> See mfv_contact_system. Where the iteration fails, the reduced system takes over, unless its matrix would be too large.
    subroutine solve(self, model, constraints, start, response, singular)
       class(krylov_system_type), intent(inout) :: self
       type(contact_model_type), intent(in) :: model
@@ -114,7 +104,7 @@ contains
       self%solves = self%solves + 1
       self%gave_up = .false.
       call solve_by_iteration(self, model, constraints, start, response, singular)
-      if (.not. singular .or. allocated(self%front)) return
+      if (.not. singular) return
       self%gave_up = size(self%contact) > most_direct
       if (self%gave_up) return
       if (.not. allocated(self%direct)) allocate (self%direct)
@@ -146,11 +136,6 @@ contains
       else
          call find_prescribed(constraints, model, .false., prescribed)
          right = right_side(self, model, constraints%status, prescribed)
-         if (allocated(self%front)) then
-            associate (rows => right%rows(size(self%contact) + 1:size(self%contact) + size(self%held)))
-               rows = rows - self%front%weight*self%front%slip
-            end associate
-         end if
          unknowns = [start%pressure(self%contact)/self%stress, start%shear(self%held)/self%stress, &
                      start%motion(self%free)/self%motion_unit(self%free)]
          call iterate(self, model, right, self%tolerance/margin, unknowns, fails, error)
@@ -262,10 +247,7 @@ contains
       self%slope = merge(constraints%row%slope, 0.0_wp, follows .and. .not. is_held)
       self%held_slope = merge(constraints%row(self%held)%slope, 0.0_wp, follows(self%held))
       if (allocated(self%front)) deallocate (self%front)
-      if (allocated(constraints%front)) then
-         self%front = constraints%front(self%held)
-         self%front%slip = self%front%slip/self%length
-      end if
+      if (allocated(constraints%front)) self%front = constraints%front(self%held)
       self%softness = 0.0_wp*self%held_slope
       where (follows(self%held)) self%softness = -1.0_wp/stiffness(self%held)
       self%coupled = model%compliance%has_block(block_up) .or. any(abs(self%slope) > 0.0_wp) .or. &

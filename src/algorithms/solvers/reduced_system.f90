@@ -9,8 +9,9 @@
 !> symmetric by reciprocity (for tractions times the widths of the nodes, where these differ). Its inverse is stored, and updated
 !> when nodes enter or leave the contact. Slipping and creeping nodes and displacement control are constraints with an unknown slip
 !> or force (mfv_constrained_inverse). A node that begins or ceases to slip then costs a few vector operations, and a reversal,
-!> where all nodes stick again, nothing. The residuals of all rows are checked after every solve with the full compliance. If they
-!> are too large, the solution is refined; if that fails, the inverse is recomputed.
+!> where all nodes stick again, nothing. The unknown slip of a node beside a front also acts on the rows of the nodes that hold at
+!> it (front_type); if it is open, it has a shear traction that is constrained to zero. The residuals of all rows are checked after
+!> every solve with the full compliance. If they are too large, the solution is refined; if that fails, the inverse is recomputed.
 !>
 !> Without the effect of shear on the normal problem (Goodman's coupling, none, no friction) the two problems are solved one after
 !> the other, each with its own inverse. Goodman's coupling with rotation or radial normals is not symmetric and uses the augmented
@@ -119,12 +120,52 @@ contains
       call follow(self, model, constraints, recompute, singular)
       if (.not. singular) singular = undetermined(self, model, constraints)
       if (singular) return
+      call spread_slip(self, constraints, .true.)
       call response%state%copy_from(start)
       call refine(self, model, constraints, .false., response%state, singular)
-      if (singular) return
-      call response%rate%clear(size(constraints%status))
-      call refine(self, model, constraints, .true., response%rate, singular)
+      if (.not. singular) then
+         call response%rate%clear(size(constraints%status))
+         call refine(self, model, constraints, .true., response%rate, singular)
+      end if
+      call spread_slip(self, constraints, .false.)
    end subroutine respond
+
+   !> Let the slip of the nodes beside fronts act on the nodes that hold at them, or (not `at_fronts`) no longer.
+   subroutine spread_slip(self, constraints, at_fronts)
+      class(reduced_system_type), intent(inout) :: self
+      type(constraints_type), intent(in) :: constraints
+      logical, intent(in) :: at_fronts
+      real(wp), allocatable :: weights(:)
+      logical :: is_outer(self%nodes)
+      integer :: i, outer
+
+      is_outer = beside_front(constraints)
+      associate (subsystem => self%subsystem(subsystem_of(self, a_shear, 0)), front => constraints%front)
+         allocate (weights(subsystem%unknowns))
+         do outer = 1, self%nodes
+            if (.not. is_outer(outer)) cycle
+            weights = 0.0_wp
+            weights(self%place(outer, a_shear)) = 1.0_wp
+            do i = 1, self%nodes
+               if (at_fronts .and. front(i)%node == outer) weights(self%place(i, a_shear)) = front(i)%weight
+            end do
+            call subsystem%system%spread(self%constraint_of(outer, a_shear), weights)
+         end do
+      end associate
+   end subroutine spread_slip
+
+   !> The nodes whose slip others depend on, shape (nodes).
+   pure function beside_front(constraints) result(beside)
+      type(constraints_type), intent(in) :: constraints
+      logical :: beside(size(constraints%status))
+      integer :: i
+
+      beside = .false.
+      if (.not. allocated(constraints%front)) return
+      do i = 1, size(beside)
+         if (constraints%front(i)%node > 0) beside(constraints%front(i)%node) = .true.
+      end do
+   end function beside_front
 
    !> Whether a force is prescribed that nothing balances: without contact, or a moment on one node.
    pure logical function undetermined(self, model, constraints)
@@ -210,6 +251,7 @@ contains
       wanted = .false.
       wanted(:self%nodes, a_pressure) = in_contact(constraints%status)
       wanted(:self%nodes, a_shear) = in_contact(constraints%status) .and. constraints%status /= node_frictionless
+      wanted(:self%nodes, a_shear) = wanted(:self%nodes, a_shear) .or. beside_front(constraints)
       wanted(motion_approach, a_motion) = any(wanted(:, a_pressure))
       wanted(motion_shift, a_motion) = any(wanted(:, a_shear))
       ! A motion that only slides (a rotation with radial normals) is determined by friction alone. Bulk stresses are known.
@@ -235,8 +277,9 @@ contains
       integer :: i, subsystem
 
       subsystem = subsystem_of(self, a_shear, 0)
-      going = self%constraint_of(:self%nodes, a_shear) > 0 .and. &
-              .not. (wanted(:self%nodes, a_shear) .and. constraints%status /= node_stick)
+      going = self%constraint_of(:self%nodes, a_shear) > 0
+      where (going) going = .not. wanted(:self%nodes, a_shear) .or. constraints%status == node_stick .or. &
+                            (wanted(:self%nodes, a_pressure) .neqv. self%place(:self%nodes, a_pressure) > 0)
       if (2*count(going) > self%subsystem(subsystem)%system%constraints) call self%subsystem(subsystem)%system%postpone()
       do i = 1, self%nodes
          if (going(i)) call release(self, subsystem, self%constraint_of(i, a_shear))
@@ -599,7 +642,7 @@ contains
       type(contact_fields_type), intent(in) :: fields
       type(scales_type), intent(in) :: scales
       real(wp), intent(out) :: largest
-      real(wp) :: missing, by_length, by_stress, gap_rest, slip_rest, traction_rest, stiffness
+      real(wp) :: missing, by_length, by_stress, gap_rest, slip_rest, traction_rest, stiffness, slip(self%nodes)
       integer :: i, node, p
 
       by_length = 1.0_wp/self%length
@@ -608,6 +651,7 @@ contains
       slip_rest = 0.0_wp
       traction_rest = 0.0_wp
       largest = 0.0_wp
+      slip = fields%slip()
       do p = 1, 2
          associate (subsystem => self%subsystem(p), prescribed => self%prescribed)
             if (size(subsystem%values) < subsystem%system%constraints) then
@@ -630,7 +674,11 @@ contains
                   largest = max(largest, relative(abs(missing), merge(scales%shear_force, scales%force, node == motion_shift)))
                   subsystem%right(i) = missing*by_stress
                else if (constraints%status(node) == node_stick) then
-                  missing = fields%motion(motion_shift) - fields%tangential(node) + prescribed%slip(node)
+                  missing = prescribed%slip(node) - slip(node)
+                  if (allocated(constraints%front)) then
+                     if (constraints%front(node)%node > 0) &
+                        missing = missing + constraints%front(node)%weight*slip(constraints%front(node)%node)
+                  end if
                   slip_rest = max(slip_rest, abs(missing))
                   subsystem%right(i) = missing*by_length
                else

@@ -19,7 +19,7 @@ module mfv_active_set
    use mfv_kinds, only: pi, wp
    use mfv_motions, only: motions, motion_count, motion_approach, motion_shift, control_force, control_displacement
    use mfv_node_status
-   use mfv_sticking_front, only: find_fronts, fronts_type, left, right
+   use mfv_sticking_front, only: find_fronts
    use mfv_tolerances, only: significant
    implicit none
    private
@@ -162,8 +162,7 @@ contains
 
    !> Solve for the fields at the end of an increment, which contain a first guess. `hold`: the slip at which nodes hold, length,
    !> shape (nodes); that of nodes at which an edge has passed follows from the solution, if `held` is present (see find_statuses).
-   !> `ahead`: from find_returning.
-   !> `solved`: false if the system is singular or the slip of the edges is not found.
+   !> `ahead`: from find_returning. `solved`: false if the system is singular.
    subroutine solve_with_fronts(path, constraints, hold, ahead, fields, solved, held, in_proportion)
       class(contact_path_type), intent(inout) :: path
       type(constraints_type), intent(inout) :: constraints
@@ -172,82 +171,26 @@ contains
       type(contact_fields_type), intent(inout) :: fields
       logical, intent(out) :: solved
       logical, intent(in), optional :: held(:), in_proportion
-      integer, parameter :: most_passes = 20
-      type(fronts_type) :: fronts
-      type(contact_fields_type) :: change(2)
-      real(wp), allocatable :: corrections(:, :)
-      real(wp) :: wrong
-      integer :: group, pass, zones
+      type(front_type) :: front(size(hold))
+      type(response_type) :: response
+      real(wp) :: slip(size(hold))
+      logical :: singular
 
-      zones = 0
       if (present(held)) then
          associate (start => path%state%fields)
-            call find_fronts(path%state%status, held,.not. start%pressure > 0.0_wp, hold, start, &
+            call find_fronts(path%state%status, held,.not. start%pressure > 0.0_wp, start, &
                              merge(path%model%initial_gap - path%model%rigid_normal(start), path%model%gap(start), in_proportion), &
-                             ahead, in_proportion, fronts)
+                             ahead, in_proportion, hold, front)
          end associate
-         zones = count(any(fronts%outer > 0, dim=1))
+         if (any(front%node > 0)) constraints%front = front
       end if
-      if (zones == 0) then
-         call solve_group(0)
-         return
-      end if
-      call fronts%assume(fields)
-      if (path%system%takes_fronts(path%state%contact_nodes())) then
-         call fronts%set_hold(hold)
-         constraints%front = fronts%of_nodes()
-         call solve_group(0)
-         deallocate (constraints%front)
-         if (solved) then
-            call fronts%assume(fields)
-            call fronts%set_hold(hold)
-            return
-         end if
-      end if
-      do pass = 1, most_passes
-         call fronts%set_hold(hold)
-         if (pass > 1) call solve_group(0)
-         do group = left, right
-            if (pass > 1 .or. fronts%number(group) == 0) cycle
-            call solve_group(group)
-            if (.not. solved) return
-         end do
-         if (.not. solved) return
-         call fronts%correct(fields, change, corrections)
-         wrong = maxval(abs(corrections))
-         if (zones == 1) then
-            ! The fields change in proportion, but for the error of the responses.
-            call fronts%set_hold(hold)
-            do group = left, right
-               if (fronts%number(group) > 0) fields = fields%plus(sum(corrections(group, :)), change(group))
-            end do
-            wrong = path%system%rate_tolerance*wrong
-         end if
-         if (wrong <= same_slip(path)*maxval(abs(fronts%slip))) return
-      end do
-      solved = .false.
-
-   contains
-
-      !> The fields, and their changes with the slip of the outer nodes of a group (0: none).
-      subroutine solve_group(group)
-         integer, intent(in) :: group
-         type(response_type) :: response
-         logical :: singular
-
-         constraints%stuck_slip = hold
-         if (allocated(constraints%slip_rate)) deallocate (constraints%slip_rate)
-         constraints%kind = rates_of_loads
-         if (group > 0) then
-            constraints%slip_rate = fronts%group_weight(group)
-            constraints%kind = rates_of_fronts(group)
-         end if
-         call path%system%solve(path%model, constraints, fields, response, singular)
-         solved = .not. singular
-         if (singular) return
-         fields = response%state
-         if (group > 0) change(group) = response%rate
-      end subroutine solve_group
+      constraints%stuck_slip = hold
+      call path%system%solve(path%model, constraints, fields, response, singular)
+      solved = .not. singular
+      if (singular) return
+      fields = response%state
+      slip = fields%slip()
+      where (front%node > 0) hold = hold + front%weight*slip(max(front%node, 1))
    end subroutine solve_with_fronts
 
    !> Slips that differ by less than this fraction of the largest are the same.
