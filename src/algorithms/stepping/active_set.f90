@@ -30,7 +30,7 @@ module mfv_active_set
    !> Most linear solves at one load.
    integer, parameter :: most_solves = 60
    !> Relative error of tractions that intermediate solutions may have, until only a `few` nodes change.
-   real(wp), parameter :: intermediate = 1.0e-6_wp
+   real(wp), parameter :: intermediate = 1.0e-6_wp, of_changes = 1.0e-4_wp
    integer, parameter :: few = 2
    !> Most nodes at fronts by which the statuses that the rates require may differ from those that the state does: where the slip at
    !> a front is only nearly as assumed, these alternate. Or one for this number of nodes that have stuck in the increment.
@@ -47,20 +47,21 @@ contains
    !> `found`: whether there are any. `path` then has the statuses, and in stuck_slip the slip from which that of the increment
    !> counts; its fields remain those of the start. If not found, the statuses are invalid: the system is singular, the statuses
    !> cycle (but for a few nodes at fronts), nothing balances a prescribed force, or every node slips.
-   subroutine find_statuses(path, segment, done, fields, found, held, in_proportion)
+   subroutine find_statuses(path, segment, done, fields, found, held, in_proportion, expected)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: done
       type(contact_fields_type), intent(inout) :: fields
       logical, intent(out) :: found
       logical, intent(in), optional :: held(:), in_proportion
+      integer, intent(in), optional :: expected(:)
       type(constraints_type) :: constraints
-      integer, dimension(size(path%state%status)) :: wanted
+      integer, dimension(size(path%state%status)) :: wanted, required
       integer :: tried(size(path%state%status), most_solves)
       real(wp), dimension(size(path%state%status)) :: hold, ahead, before
       type(contact_state_type) :: consistent
-      logical :: possible, by_edges, rough, accurate, is_consistent
-      integer :: solve, first, looks, stuck
+      logical :: possible, by_edges, guessed, rough, accurate, is_consistent
+      integer :: solve, first, looks, stuck, changed
 
       found = .false.
       rough = segment%allowed < intermediate
@@ -71,16 +72,20 @@ contains
       path%state%stuck_slip = hold
       ahead = 0.0_wp
       looks = 0
+      changed = size(wanted)
       do solve = 1, most_solves
          tried(:, solve) = path%state%status
          call constrain(path, segment, done, constraints, possible)
          if (.not. possible) return
          path%state%stuck_slip = hold
          if (rough) constraints%allowed = intermediate
+         if (rough .and. .not. present(held)) constraints%allowed = max(intermediate, of_changes*changed/size(wanted))
          call solve_with_fronts(path, constraints, path%state%stuck_slip, ahead, fields, possible, held, in_proportion)
          if (.not. possible) return
          call find_wanted(path, segment, fields, wanted, held)
          if (.not. present(held)) call slip_on_return(path, fields, any(in_contact(tried(:, :solve)), dim=2), wanted)
+         guessed = solve == 1 .and. present(expected)
+         if (guessed) wanted = expected
          found = all(wanted == path%state%status)
          is_consistent = found
          accurate = .not. rough .or. path%system%tolerance <= max(round_off, segment%allowed)
@@ -112,7 +117,15 @@ contains
             stuck = count(path%state%status == node_stick .and. .not. held)
             if (count(wanted /= path%state%status) <= max(at_fronts, stuck/stuck_for_one)) call keep(path, fields, consistent)
          end if
-         if (by_edges) call move_edges(path%state%status, wanted, held)
+         if (by_edges .and. .not. guessed) then
+            required = wanted
+            call move_edges(path%state%status, wanted, held)
+            if (is_among(wanted, tried(:, first:solve)) .and. .not. (found .or. allocated(consistent%status))) then
+               by_edges = .false.
+               first = solve + 1
+               wanted = required
+            end if
+         end if
          if (found .and. is_among(wanted, tried(:, :solve))) then
             found = .not. reverses(path, fields, held)
             return
@@ -120,6 +133,7 @@ contains
          found = .false.
          call find_touching(path, fields, wanted, hold)
          looks = 0
+         changed = count(wanted /= path%state%status)*size(wanted)/max(count(in_contact(wanted)), 1)
          call path%set_status(wanted /= path%state%status, wanted)
          path%state%stuck_slip = hold
          if (.not. is_among(wanted, tried(:, first:solve))) cycle

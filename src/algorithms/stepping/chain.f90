@@ -80,7 +80,7 @@ contains
       type(chain_type), intent(in), optional :: other
       type(contact_state_type) :: present_state
       logical, allocatable :: held(:)
-      integer, allocatable :: status(:)
+      integer, allocatable :: status(:), expected(:)
       integer :: i
 
       present_state = path%state
@@ -94,8 +94,9 @@ contains
          status = path%state%status
          if (chain%fronts) held = holding_before(chain, start, i)
          call guess_end(path, interval, start, chain, i, held, other)
+         if (.not. (chain%fronts .or. chain%begins)) call expect_contact(path, chain, i, expected, other)
          call find_statuses_on_mesh(path, interval, reached(chain, i), chain%after(i), chain%found, chain%exceeded, held, &
-                                    chain%begins)
+                                    chain%begins, expected)
          if (.not. chain%found) exit
          if (chain%fronts) chain%sticks_anew = chain%sticks_anew .or. any(path%state%status == node_stick .and. .not. held)
          chain%changes = chain%changes + count_changes(status, path%state%status)
@@ -212,6 +213,24 @@ contains
          chain%after(i) = mean(path%state%fields, other%after(next))
       end if
    end subroutine guess_from
+
+   !> The contact expected at the end of increment `i` of a chain: that of the `other` chain there, or one in which gaps and
+   !> pressures have changed as in the increment before; not allocated: unknown.
+   subroutine expect_contact(path, chain, i, expected, other)
+      class(contact_path_type), intent(in) :: path
+      type(chain_type), intent(in) :: chain
+      integer, intent(in) :: i
+      integer, allocatable, intent(inout) :: expected(:)
+      type(chain_type), intent(in), optional :: other
+
+      if (allocated(expected)) deallocate (expected)
+      if (present(other)) then
+         if (modulo(i*other%increments, chain%increments) == 0) then
+            expected = other%before(i*other%increments/chain%increments)%status
+            return
+         end if
+      end if
+   end subroutine expect_contact
 
    !> The mean of two fields.
    pure type(contact_fields_type) function mean(a, b)
