@@ -463,7 +463,7 @@ contains
 
       tolerance = max(round_off, path%system%tolerance)
       traction = tolerance*max(maxval(abs(fields%pressure)), maxval(abs(fields%shear)), path%certificate%traction_scale)
-      motion = tolerance*max(maxval(abs(fields%normal)), maxval(abs(fields%tangential)), abs(fields%motion(motion_approach)), &
+      motion = round_off*max(maxval(abs(fields%normal)), maxval(abs(fields%tangential)), abs(fields%motion(motion_approach)), &
                              abs(fields%motion(motion_shift)))
       gap = path%model%gap(fields)
       slipped = 0.0_wp
