@@ -29,7 +29,8 @@ module mfv_active_set
    real(wp), parameter :: round_off = 1.0e-11_wp
    !> Most linear solves at one load.
    integer, parameter :: most_solves = 60
-   !> Relative error of tractions that intermediate solutions may have, until only a `few` nodes change.
+   !> Relative error of tractions that intermediate solutions may have, until only a `few` nodes change; where no fronts are known,
+   !> this part of the fraction of the contact that has changed, if it is larger.
    real(wp), parameter :: intermediate = 1.0e-6_wp, of_changes = 1.0e-4_wp
    integer, parameter :: few = 2
    !> Most nodes at fronts by which the statuses that the rates require may differ from those that the state does: where the slip at
@@ -44,6 +45,7 @@ contains
    !> is the fields of `path`. `held`: nodes that hold from the start, while others stick as the edges of their zones move
    !> (mfv_sticking_front), shape (nodes); if absent, all nodes that stick hold at the slip of the start or of first contact.
    !> `in_proportion`: whether zones have grown in proportion to their size (mfv_sticking_front); needed with `held`.
+   !> `expected`: statuses for the second solution; the first one shows when nodes touch, shape (nodes).
    !> `found`: whether there are any. `path` then has the statuses, and in stuck_slip the slip from which that of the increment
    !> counts; its fields remain those of the start. If not found, the statuses are invalid: the system is singular, the statuses
    !> cycle (but for a few nodes at fronts), nothing balances a prescribed force, or every node slips.
@@ -61,7 +63,8 @@ contains
       real(wp), dimension(size(path%state%status)) :: hold, ahead, before
       type(contact_state_type) :: consistent
       logical :: possible, by_edges, guessed, rough, accurate, is_consistent
-      integer :: solve, first, looks, stuck, changed
+      integer :: solve, first, looks, stuck
+      real(wp) :: changed
 
       found = .false.
       rough = segment%allowed < intermediate
@@ -72,14 +75,14 @@ contains
       path%state%stuck_slip = hold
       ahead = 0.0_wp
       looks = 0
-      changed = size(wanted)
+      changed = 1.0_wp
       do solve = 1, most_solves
          tried(:, solve) = path%state%status
          call constrain(path, segment, done, constraints, possible)
          if (.not. possible) return
          path%state%stuck_slip = hold
          if (rough) constraints%allowed = intermediate
-         if (rough .and. .not. present(held)) constraints%allowed = max(intermediate, of_changes*changed/size(wanted))
+         if (rough .and. .not. present(held)) constraints%allowed = max(intermediate, of_changes*changed)
          call solve_with_fronts(path, constraints, path%state%stuck_slip, ahead, fields, possible, held, in_proportion)
          if (.not. possible) return
          call find_wanted(path, segment, fields, wanted, held)
@@ -120,6 +123,7 @@ contains
          if (by_edges .and. .not. guessed) then
             required = wanted
             call move_edges(path%state%status, wanted, held)
+            ! Edges that were moved too far would cycle.
             if (is_among(wanted, tried(:, first:solve)) .and. .not. (found .or. allocated(consistent%status))) then
                by_edges = .false.
                first = solve + 1
@@ -133,7 +137,7 @@ contains
          found = .false.
          call find_touching(path, fields, wanted, hold)
          looks = 0
-         changed = count(wanted /= path%state%status)*size(wanted)/max(count(in_contact(wanted)), 1)
+         changed = min(1.0_wp, real(count(wanted /= path%state%status), wp)/max(count(in_contact(wanted)), 1))
          call path%set_status(wanted /= path%state%status, wanted)
          path%state%stuck_slip = hold
          if (.not. is_among(wanted, tried(:, first:solve))) cycle

@@ -94,7 +94,7 @@ contains
          status = path%state%status
          if (chain%fronts) held = holding_before(chain, start, i)
          call guess_end(path, interval, start, chain, i, held, other)
-         if (.not. (chain%fronts .or. chain%begins)) call expect_contact(path, chain, i, expected, other)
+         call expect_statuses(chain, i, expected, other)
          call find_statuses_on_mesh(path, interval, reached(chain, i), chain%after(i), chain%found, chain%exceeded, held, &
                                     chain%begins, expected)
          if (.not. chain%found) exit
@@ -214,23 +214,17 @@ contains
       end if
    end subroutine guess_from
 
-   !> The contact expected at the end of increment `i` of a chain: that of the `other` chain there, or one in which gaps and
-   !> pressures have changed as in the increment before; not allocated: unknown.
-   subroutine expect_contact(path, chain, i, expected, other)
-      class(contact_path_type), intent(in) :: path
+   !> The statuses expected at the end of increment `i` of a chain, those of the `other` chain there; not allocated: unknown. (Of
+   !> fronts and where contact begins they are the first guess itself.)
+   subroutine expect_statuses(chain, i, expected, other)
       type(chain_type), intent(in) :: chain
       integer, intent(in) :: i
-      integer, allocatable, intent(inout) :: expected(:)
+      integer, allocatable, intent(out) :: expected(:)
       type(chain_type), intent(in), optional :: other
 
-      if (allocated(expected)) deallocate (expected)
-      if (present(other)) then
-         if (modulo(i*other%increments, chain%increments) == 0) then
-            expected = other%before(i*other%increments/chain%increments)%status
-            return
-         end if
-      end if
-   end subroutine expect_contact
+      if (chain%fronts .or. chain%begins .or. .not. present(other)) return
+      if (modulo(i*other%increments, chain%increments) == 0) expected = other%before(i*other%increments/chain%increments)%status
+   end subroutine expect_statuses
 
    !> The mean of two fields.
    pure type(contact_fields_type) function mean(a, b)

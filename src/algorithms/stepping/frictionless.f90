@@ -96,7 +96,8 @@ contains
 
    !> Statuses and fields at a fraction of the segment, on the present mesh. The first guess is `fields` and the statuses of `path`,
    !> or an estimate if nothing is in contact. `found`: whether there are any; if not, the statuses are invalid. `exceeded`: whether
-   !> only the mesh is too short. The fields of `path` remain those of the start. `held`, `in_proportion`: see find_statuses.
+   !> only the mesh is too short. The fields of `path` remain those of the start. `held`, `in_proportion`, `expected`: see
+   !> find_statuses.
    subroutine find_statuses_on_mesh(path, segment, fraction, fields, found, exceeded, held, in_proportion, expected)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
