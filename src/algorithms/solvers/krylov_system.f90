@@ -15,8 +15,8 @@
 !> that of C_ut after subtracting the effect of these pressures; on several patches, where these inverses are not exact, it is
 !> block diagonal, which takes more iterations (a sixth to a third), but one product less in each. The free motions follow from a
 !> Schur complement of at most three rows. GMRES is applied to the preconditioned rows: up to the coupling its residual is the
-!> error of the unknowns, and `linear_tolerance` is the relative error of tractions and motions (2-norms). On consecutive nodes the number of iterations does
-!> not depend on that of nodes: about 12 for nu = 0.3 and mu = 0.5, about 36 for nu = 0 and mu = 3.
+!> error of the unknowns, and `linear_tolerance` is the relative error of tractions and motions (2-norms). On consecutive nodes the
+!> number of iterations does not depend on that of nodes: about 12 for nu = 0.3 and mu = 0.5, about 36 for nu = 0 and mu = 3.
 module mfv_krylov_system
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use mfv_compliance, only: block_up, block_wt
