@@ -22,7 +22,7 @@ TAMAAS = os.environ.get("MFV_TAMAAS", "")
 LENGTH, MODULUS, MU, SHARE = 10.0, 1.0, 0.3, 0.6
 #: A realisation: exponent, slope, longest wave of the power law, points on the shortest wave, mean pressure over the modulus.
 HURST, SLOPE, LONGEST, POINTS, PRESSURE = 0.8, 0.1, 0.5, 8, 0.01
-POINTS_COUPLED = (1024, 2048, 10000, 22401)
+POINTS_COUPLED = (1024, 2048, 10000, 22401, 131072)
 POINTS_OF_ROWS, QUICK = (1024, 4096, 16384, 65536, 131072), (1024, 4096)
 #: Resolution: waves in the period, and points on the shortest.
 WAVES, FINER = 128, (4, 8, 16, 32, 64)

@@ -45,6 +45,7 @@ module mfv_krylov_preconditioner
       procedure :: apply_held
       procedure :: smallest
       procedure :: is_exact
+      procedure :: on_one_patch
    end type krylov_preconditioner_type
 
 contains
@@ -132,6 +133,13 @@ contains
       is_exact = self%by_distance .and. self%contact%is_toeplitz .and. self%held%is_toeplitz
       if (is_exact) is_exact = all(self%softness >= 0.0_wp)
    end function is_exact
+
+   !> Whether the nodes in contact are consecutive.
+   pure logical function on_one_patch(self)
+      class(krylov_preconditioner_type), intent(in) :: self
+
+      on_one_patch = self%contact%is_toeplitz
+   end function on_one_patch
 
    !> Approximate smallest eigenvalue of the blocks, in the units of the system.
    pure real(wp) function smallest(self)

@@ -29,8 +29,9 @@ module mfv_active_set
    real(wp), parameter :: round_off = 1.0e-11_wp
    !> Most linear solves at one load.
    integer, parameter :: most_solves = 60
-   !> Relative error of tractions that intermediate solutions may have, until only a `few` nodes change.
-   real(wp), parameter :: intermediate = 1.0e-6_wp
+   !> Relative error of tractions that intermediate solutions may have, until only a `few` nodes change; where no fronts are known,
+   !> this part of the fraction of the contact that has changed, if it is larger.
+   real(wp), parameter :: intermediate = 1.0e-6_wp, of_changes = 1.0e-4_wp
    integer, parameter :: few = 2
    !> Most nodes at fronts by which the statuses that the rates require may differ from those that the state does: where the slip at
    !> a front is only nearly as assumed, these alternate. Or one for this number of nodes that have stuck in the increment.
@@ -44,23 +45,26 @@ contains
    !> is the fields of `path`. `held`: nodes that hold from the start, while others stick as the edges of their zones move
    !> (mfv_sticking_front), shape (nodes); if absent, all nodes that stick hold at the slip of the start or of first contact.
    !> `in_proportion`: whether zones have grown in proportion to their size (mfv_sticking_front); needed with `held`.
+   !> `expected`: statuses for the second solution; the first one shows when nodes touch, shape (nodes).
    !> `found`: whether there are any. `path` then has the statuses, and in stuck_slip the slip from which that of the increment
    !> counts; its fields remain those of the start. If not found, the statuses are invalid: the system is singular, the statuses
    !> cycle (but for a few nodes at fronts), nothing balances a prescribed force, or every node slips.
-   subroutine find_statuses(path, segment, done, fields, found, held, in_proportion)
+   subroutine find_statuses(path, segment, done, fields, found, held, in_proportion, expected)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: done
       type(contact_fields_type), intent(inout) :: fields
       logical, intent(out) :: found
       logical, intent(in), optional :: held(:), in_proportion
+      integer, intent(in), optional :: expected(:)
       type(constraints_type) :: constraints
-      integer, dimension(size(path%state%status)) :: wanted
+      integer, dimension(size(path%state%status)) :: wanted, required
       integer :: tried(size(path%state%status), most_solves)
       real(wp), dimension(size(path%state%status)) :: hold, ahead, before
       type(contact_state_type) :: consistent
-      logical :: possible, by_edges, rough, accurate, is_consistent
+      logical :: possible, by_edges, guessed, rough, accurate, is_consistent
       integer :: solve, first, looks, stuck
+      real(wp) :: changed
 
       found = .false.
       rough = segment%allowed < intermediate
@@ -71,16 +75,20 @@ contains
       path%state%stuck_slip = hold
       ahead = 0.0_wp
       looks = 0
+      changed = 1.0_wp
       do solve = 1, most_solves
          tried(:, solve) = path%state%status
          call constrain(path, segment, done, constraints, possible)
          if (.not. possible) return
          path%state%stuck_slip = hold
          if (rough) constraints%allowed = intermediate
+         if (rough .and. .not. present(held)) constraints%allowed = max(intermediate, of_changes*changed)
          call solve_with_fronts(path, constraints, path%state%stuck_slip, ahead, fields, possible, held, in_proportion)
          if (.not. possible) return
          call find_wanted(path, segment, fields, wanted, held)
          if (.not. present(held)) call slip_on_return(path, fields, any(in_contact(tried(:, :solve)), dim=2), wanted)
+         guessed = solve == 1 .and. present(expected)
+         if (guessed) wanted = expected
          found = all(wanted == path%state%status)
          is_consistent = found
          accurate = .not. rough .or. path%system%tolerance <= max(round_off, segment%allowed)
@@ -112,7 +120,16 @@ contains
             stuck = count(path%state%status == node_stick .and. .not. held)
             if (count(wanted /= path%state%status) <= max(at_fronts, stuck/stuck_for_one)) call keep(path, fields, consistent)
          end if
-         if (by_edges) call move_edges(path%state%status, wanted, held)
+         if (by_edges .and. .not. guessed) then
+            required = wanted
+            call move_edges(path%state%status, wanted, held)
+            ! Edges that were moved too far would cycle.
+            if (is_among(wanted, tried(:, first:solve)) .and. .not. (found .or. allocated(consistent%status))) then
+               by_edges = .false.
+               first = solve + 1
+               wanted = required
+            end if
+         end if
          if (found .and. is_among(wanted, tried(:, :solve))) then
             found = .not. reverses(path, fields, held)
             return
@@ -120,6 +137,7 @@ contains
          found = .false.
          call find_touching(path, fields, wanted, hold)
          looks = 0
+         changed = min(1.0_wp, real(count(wanted /= path%state%status), wp)/max(count(in_contact(wanted)), 1))
          call path%set_status(wanted /= path%state%status, wanted)
          path%state%stuck_slip = hold
          if (.not. is_among(wanted, tried(:, first:solve))) cycle
@@ -392,7 +410,7 @@ contains
 
       tolerance = max(round_off, path%system%tolerance)
       traction = tolerance*max(maxval(abs(fields%pressure)), maxval(abs(fields%shear)), path%certificate%traction_scale)
-      motion = tolerance*max(maxval(abs(fields%normal)), maxval(abs(fields%tangential)), abs(fields%motion(motion_approach)), &
+      motion = round_off*max(maxval(abs(fields%normal)), maxval(abs(fields%tangential)), abs(fields%motion(motion_approach)), &
                              abs(fields%motion(motion_shift)))
       gap = path%model%gap(fields)
       slipped = 0.0_wp

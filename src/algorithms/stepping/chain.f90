@@ -80,7 +80,7 @@ contains
       type(chain_type), intent(in), optional :: other
       type(contact_state_type) :: present_state
       logical, allocatable :: held(:)
-      integer, allocatable :: status(:)
+      integer, allocatable :: status(:), expected(:)
       integer :: i
 
       present_state = path%state
@@ -94,8 +94,9 @@ contains
          status = path%state%status
          if (chain%fronts) held = holding_before(chain, start, i)
          call guess_end(path, interval, start, chain, i, held, other)
+         call expect_statuses(chain, i, expected, other)
          call find_statuses_on_mesh(path, interval, reached(chain, i), chain%after(i), chain%found, chain%exceeded, held, &
-                                    chain%begins)
+                                    chain%begins, expected)
          if (.not. chain%found) exit
          if (chain%fronts) chain%sticks_anew = chain%sticks_anew .or. any(path%state%status == node_stick .and. .not. held)
          chain%changes = chain%changes + count_changes(status, path%state%status)
@@ -212,6 +213,18 @@ contains
          chain%after(i) = mean(path%state%fields, other%after(next))
       end if
    end subroutine guess_from
+
+   !> The statuses expected at the end of increment `i` of a chain, those of the `other` chain there; not allocated: unknown. (Of
+   !> fronts and where contact begins they are the first guess itself.)
+   subroutine expect_statuses(chain, i, expected, other)
+      type(chain_type), intent(in) :: chain
+      integer, intent(in) :: i
+      integer, allocatable, intent(out) :: expected(:)
+      type(chain_type), intent(in), optional :: other
+
+      if (chain%fronts .or. chain%begins .or. .not. present(other)) return
+      if (modulo(i*other%increments, chain%increments) == 0) expected = other%before(i*other%increments/chain%increments)%status
+   end subroutine expect_statuses
 
    !> The mean of two fields.
    pure type(contact_fields_type) function mean(a, b)

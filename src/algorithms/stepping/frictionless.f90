@@ -96,17 +96,19 @@ contains
 
    !> Statuses and fields at a fraction of the segment, on the present mesh. The first guess is `fields` and the statuses of `path`,
    !> or an estimate if nothing is in contact. `found`: whether there are any; if not, the statuses are invalid. `exceeded`: whether
-   !> only the mesh is too short. The fields of `path` remain those of the start. `held`, `in_proportion`: see find_statuses.
-   subroutine find_statuses_on_mesh(path, segment, fraction, fields, found, exceeded, held, in_proportion)
+   !> only the mesh is too short. The fields of `path` remain those of the start. `held`, `in_proportion`, `expected`: see
+   !> find_statuses.
+   subroutine find_statuses_on_mesh(path, segment, fraction, fields, found, exceeded, held, in_proportion, expected)
       class(contact_path_type), intent(inout) :: path
       type(segment_type), intent(in) :: segment
       real(wp), intent(in) :: fraction
       type(contact_fields_type), intent(inout) :: fields
       logical, intent(out) :: found, exceeded
       logical, intent(in), optional :: held(:), in_proportion
+      integer, intent(in), optional :: expected(:)
 
       call guess_contact(path, segment, fraction)
-      call find_statuses(path, segment, fraction, fields, found, held, in_proportion)
+      call find_statuses(path, segment, fraction, fields, found, held, in_proportion, expected)
       exceeded = found
       if (found) exceeded = path%model%reaches_end(in_contact(path%state%status))
       found = found .and. .not. exceeded

@@ -207,12 +207,13 @@ contains
    end function is_coupled
 
    !> Whether contact begins, or has begun in the segment, on so few nodes that large increments with coupling would not be
-   !> accurate; or begins on layers, so that it does not grow in proportion to its shape.
+   !> accurate; or begins on layers or a rough surface, so that it does not grow in proportion to its shape.
    logical function begins_on_few_nodes(path, interval, progress) result(few)
       class(contact_path_type), intent(in) :: path
       type(segment_type), intent(in) :: interval
       type(leap_progress_type), intent(in) :: progress
       logical :: contact(size(path%state%status))
+      real(wp) :: gap(size(contact))
 
       few = is_coupled(path)
       if (.not. few) return
@@ -220,7 +221,11 @@ contains
          few = has_begun(progress) .and. path%state%contact_nodes() < nodes_to_begin .and. .not. is_rough(path%state%status)
       else
          call first_guess(path, interval, 1.0_wp, contact)
-         few = count(contact) < error_at_start/path%model%scene%method%accuracy .or. path%model%scene%is_layered()
+         ! Patches of a rough surface do not extend beyond the largest gaps beside them.
+         gap = path%model%gap(path%state%fields)
+         contact = contact .and. .not. (gap > eoshift(gap, -1, huge(gap)) .and. gap >= eoshift(gap, 1, huge(gap)))
+         few = count(contact) < error_at_start/path%model%scene%method%accuracy .or. path%model%scene%is_layered() .or. &
+               is_rough(merge(node_stick, node_open, contact))
       end if
    end function begins_on_few_nodes
 
