@@ -181,6 +181,7 @@ contains
       class(interior_type), intent(in) :: self
       real(wp), intent(in) :: x, y
       real(wp) :: from_origin(2)
+      type(material_type) :: material
       real(wp), parameter :: tolerance = 4.0_wp*epsilon(1.0_wp)
 
       if (self%body%deforms_as_circle()) then
@@ -189,11 +190,8 @@ contains
             contains_point = merge(beyond <= tolerance, beyond >= -tolerance, self%body%is_disk())
          end associate
       else
-         contains_point = self%side*y <= 0.0_wp
-         if (self%body%elasticity%is_layered()) then
-            if (.not. self%body%elasticity%base%exists()) contains_point = contains_point .and. &
-                                                                      self%body%layer_at(abs(y)) <= size(self%body%elasticity%layer)
-         end if
+         material = self%body%elasticity%material_of(self%body%elasticity%layer_at(abs(y)))
+         contains_point = self%side*y <= 0.0_wp .and. material%exists()
       end if
    end function contains_point
 
@@ -226,7 +224,7 @@ contains
          values(stress_yy) = turned(1)
          values(stress_xy) = merge(turned(3), -turned(3), self%body%is_disk())
       else
-         layer = self%body%layer_at(abs(y))
+         layer = self%body%elasticity%layer_at(abs(y))
          values(:3) = stress_below(self, x, abs(y), layer)
       end if
       values(stress_zz) = stress_zz_of(self, layer, values(:3))
@@ -294,9 +292,7 @@ contains
       if (.not. self%body%elasticity%is_layered()) return
       depth = 2.0_wp*self%half_width()
       if (present(deepest)) depth = max(depth, deepest)
-      associate (thickness => self%body%elasticity%depth_of(size(self%body%elasticity%layer)))
-         call self%layers%table%prepare(min(depth, most*(thickness + 2.0_wp*self%half_width())))
-      end associate
+      call self%layers%table%prepare(min(depth, most*(self%body%elasticity%thickness() + 2.0_wp*self%half_width())))
    end subroutine prepare
 
    !> What a von Mises stress at a depth, length, counts in the search for the largest one: of layers with different yield strengths
@@ -308,9 +304,9 @@ contains
       integer :: i, layer
 
       weight = 1.0_wp
-      if (.not. (self%body%elasticity%is_layered() .and. self%body%has_strength())) return
-      largest = maxval([(self%body%strength_of(i), i=1, size(self%body%elasticity%layer) + 1)])
-      layer = self%body%layer_at(depth)
+      if (.not. self%body%has_strength()) return
+      largest = maxval([(self%body%strength_of(i), i=1, self%body%elasticity%layer_count() + 1)])
+      layer = self%body%elasticity%layer_at(depth)
       weight = 0.0_wp
       if (self%body%strength_of(layer) > 0.0_wp) weight = largest/self%body%strength_of(layer)
    end function weight_at
