@@ -377,8 +377,7 @@ contains
 
       thickness = 0.0_wp
       if (.not. self%is_all_on_rigid()) return
-      if (self%has_layers(.false.)) thickness = sum(self%lower%elasticity%layer%thickness)
-      if (self%has_layers(.true.)) thickness = thickness + sum(self%upper%elasticity%layer%thickness)
+      thickness = self%lower%elasticity%thickness() + self%upper%elasticity%thickness()
    end function compressed_thickness
 
    !> Whether the lower or the `upper` body has layers.
@@ -409,8 +408,7 @@ contains
    pure logical function has_datum(self)
       class(scene_type), intent(in) :: self
 
-      has_datum = .not. (self%lower%circular() .or. self%upper%circular() .or. self%lower%is_matrix())
-      if (self%is_layered()) has_datum = has_datum .and. .not. self%is_all_on_rigid()
+      has_datum = .not. (self%lower%circular() .or. self%upper%circular() .or. self%is_all_on_rigid())
    end function has_datum
 
    !> Datum of the displacements of both bodies together, length: the mean of the logarithms of their datums, weighted with their
