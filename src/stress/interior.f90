@@ -6,15 +6,15 @@ module mfv_interior
    use mfv_body, only: body_type
    use mfv_interior_circle, only: circle_load_type, longest_element, new_circle_load
    use mfv_interior_layers, only: layered_load_type, new_layered_load
-   use mfv_interior_half_plane, only: half_plane_load_type, new_half_plane_load
+   use mfv_interior_half_plane, only: half_plane_load_type, new_half_plane_load, surface_stress_of
    use mfv_kinds, only: wp
    use mfv_material, only: material_type
    use mfv_surface_tractions, only: find_closed_elements, find_traction_elements, traction_elements_type, zone_list_type
    use mfv_tolerances, only: certified, significant
    implicit none
    private
-   public :: interior_type, new_interior, has_interior, von_mises_stress, tresca_stress, principal_stresses, polar_stress
-   public :: stress_xx, stress_yy, stress_xy, stress_zz, stress_count, stress_names, stress_von_mises
+   public :: interior_type, new_interior, has_interior, von_mises_stress, tresca_stress, polar_stress
+   public :: stress_xx, stress_yy, stress_xy, stress_count, stress_names
 
    !> Indices of the result of `stress`.
    integer, parameter :: stress_xx = 1, stress_yy = 2, stress_xy = 3, stress_zz = 4
@@ -111,7 +111,7 @@ contains
          call find_closed_elements(arc, width, pressure, self%side*shear, seen%turn, longest, self%elements)
       else
          call find_traction_elements(arc, width, pressure, self%side*shear, seen, longest, self%elements)
-         if (zones%joined) call join_ends(self%elements, zones%period)
+         if (zones%period > 0.0_wp) call join_ends(self%elements, zones%period)
       end if
       associate (e => self%elements)
          if (self%body%deforms_as_circle()) then
@@ -125,13 +125,8 @@ contains
             self%circle = new_circle_load(body%is_disk(), body%elasticity%material%kolosov, e%from, e%to, &
                                           polar(self, radial, e%from, e%first), polar(self, radial, e%to, e%last))
          else
-            associate (material => body%elasticity%material, period => body%elasticity%period/self%length)
-               if (period > 0.0_wp) then
-                  self%half_plane = new_half_plane_load(material, e%from, e%to, e%first, e%last, period, zones%middle/self%length)
-               else
-                  self%half_plane = new_half_plane_load(material, e%from, e%to, e%first, e%last)
-               end if
-            end associate
+            self%half_plane = new_half_plane_load(body%elasticity%material, e%from, e%to, e%first, e%last, &
+                                                  body%elasticity%period/self%length, zones%middle/self%length)
             if (body%elasticity%is_layered()) self%layers = &
                new_layered_load(self%body%elasticity%layer_stress, self%length*e%from, self%length*e%to, e%first, e%last)
          end if
@@ -476,11 +471,8 @@ contains
       if (n < 2) return
       associate (elements => self%elements)
          length = elements%to - elements%from
-         associate (material => self%body%elasticity%material)
-            slope = aimag(elements%last - elements%first)/length
-            if (material%pressure_stretches()) slope = aimag(material%root_sum)*slope &
-                                                      - aimag(material%root_product)*real(elements%last - elements%first, wp)/length
-         end associate
+         slope = surface_stress_of(self%body%elasticity%material, 0.0_wp, 0.0_wp, real(elements%last - elements%first, wp)/length, &
+                                   aimag(elements%last - elements%first)/length)
          change = 0.0_wp
          where (.not. elements%from(2:) > elements%to(:n - 1)) change = abs(slope(2:) - slope(:n - 1))*(length(2:) + length(:n - 1))
          is_place = .false.

@@ -19,7 +19,7 @@ module mfv_scene
    private
    public :: scene_type, both_rigid, mesh_request_type, step_type, method_type, control_keep, control_force, control_displacement, &
              most_cycles, most_of_datum, algorithm_mfv, algorithm_conventional, stepping_event, stepping_nominal, stepping_leap, &
-             stepping_auto, integration_second_order, integration_explicit, solver_auto, solver_dgesv, solver_reduced, solver_fft, &
+             stepping_auto, integration_explicit, solver_auto, solver_dgesv, solver_reduced, solver_fft, &
              algorithm_names, stepping_names, integration_names, solver_names, friction_tolerance_part, most_by_points, &
              accuracy_by_mesh, last_with_target
 
@@ -630,9 +630,7 @@ contains
             zones%sharp(side, i) = ends_with_body(self, arc, width, zones%contact(side, i), 2*side - 3)
          end do
       end do
-      zones%period = ratio*self%repeat_length()
-      zones%joined = zones%period > 0.0_wp
-      if (zones%joined) zones%joined = all(self%repeats_beyond(pack(zones%contact, zones%sharp)))
+      if (all(self%repeats_beyond(pack(zones%contact, zones%sharp)))) zones%period = ratio*self%repeat_length()
       zones%contact = ratio*zones%contact
       if (self%coupling == coupling_full) zones%pair = self%near_field()
       zones%middle = self%mesh%middle
