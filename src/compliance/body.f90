@@ -85,9 +85,9 @@ contains
    !> Whether a yield strength is known.
    pure logical function has_strength(self)
       class(body_type), intent(in) :: self
+      integer :: i
 
-      has_strength = self%yield_strength > 0.0_wp
-      if (self%elasticity%is_layered()) has_strength = has_strength .or. any(self%elasticity%layer%yield_strength > 0.0_wp)
+      has_strength = any([(self%strength_of(i) > 0.0_wp, i=1, self%elasticity%layer_count() + 1)])
    end function has_strength
 
    !> Whether the body has a surface at x. `parabolic`: the parabola of a circle is unlimited, unless it deforms as a circle.
