@@ -66,7 +66,6 @@ module mfv_layers
       procedure :: nearest_image
       procedure :: slant
       procedure :: is_oblique
-      procedure :: wave_layer
    end type layers_type
 
 contains
@@ -282,12 +281,12 @@ contains
       real(wp) :: values(3, loads)
       complex(wp), parameter :: none(2, 2) = 0.0_wp
 
-      values = real(wave_stress(self%wave_layer(number), none, unity), wp)
+      values = real(wave_stress(wave_layer(self, number), none, unity), wp)
    end function uniform_stresses
 
    !> A layer, or the base.
    pure type(wave_layer_type) function wave_layer(self, number)
-      class(layers_type), intent(in) :: self
+      type(layers_type), intent(in) :: self
       integer, intent(in) :: number
 
       if (number > size(self%layer)) then

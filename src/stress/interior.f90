@@ -59,7 +59,6 @@ module mfv_interior
       procedure :: half_width
       procedure :: surface
       procedure :: middle
-      procedure :: contains_point
       procedure :: centre
       procedure :: kinks
       procedure :: knots_apart
@@ -173,7 +172,7 @@ contains
 
    !> Whether the point (x, y), lengths, is in the body or on its surface.
    pure logical function contains_point(self, x, y)
-      class(interior_type), intent(in) :: self
+      type(interior_type), intent(in) :: self
       real(wp), intent(in) :: x, y
       real(wp) :: from_origin(2)
       type(material_type) :: material
@@ -209,7 +208,7 @@ contains
 
       values = ieee_value(1.0_wp, ieee_quiet_nan)
       if (.not. (ieee_is_finite(x) .and. ieee_is_finite(y))) return
-      if (.not. self%contains_point(x, y)) return
+      if (.not. contains_point(self, x, y)) return
       layer = 1
       if (self%body%deforms_as_circle()) then
          from_origin = coordinates_in_radii(self, x, y)
