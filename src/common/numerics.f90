@@ -6,7 +6,7 @@ module mfv_numerics
    use mfv_quadrature, only: gauss_points
    implicit none
    private
-   public :: parametric_function, root_between, gauss_legendre
+   public :: root_between, gauss_legendre
 
    abstract interface
       !> A real function of one variable `x` and parameters.

@@ -21,7 +21,6 @@ module mfv_body
       procedure :: covers
       procedure :: deforms_as_circle
       procedure :: is_matrix
-      procedure :: layer_at
       procedure :: strength_of
       procedure :: strength_at
       procedure :: has_strength
@@ -66,23 +65,13 @@ contains
       is_matrix = self%elasticity%is_matrix()
    end function is_matrix
 
-   !> Number of the layer at a depth below the surface, length, of two that meet there the upper one; 1 without layers.
-   pure integer function layer_at(self, depth) result(number)
-      class(body_type), intent(in) :: self
-      real(wp), intent(in) :: depth
-
-      number = 1
-      if (self%elasticity%is_layered()) number = self%elasticity%layer_at(depth)
-   end function layer_at
-
    !> Yield strength of a layer, or of the body without layers, force/length^2; 0: unknown.
    pure real(wp) function strength_of(self, layer) result(strength)
       class(body_type), intent(in) :: self
       integer, intent(in) :: layer
 
       strength = self%yield_strength
-      if (.not. self%elasticity%is_layered()) return
-      if (layer <= size(self%elasticity%layer)) strength = self%elasticity%layer(layer)%yield_strength
+      if (layer <= self%elasticity%layer_count()) strength = self%elasticity%layer(layer)%yield_strength
    end function strength_of
 
    !> Yield strength at a depth (its size counts) below the surface, length; force/length^2; 0: unknown.
@@ -90,15 +79,15 @@ contains
       class(body_type), intent(in) :: self
       real(wp), intent(in) :: depth
 
-      strength = self%strength_of(self%layer_at(abs(depth)))
+      strength = self%strength_of(self%elasticity%layer_at(abs(depth)))
    end function strength_at
 
    !> Whether a yield strength is known.
    pure logical function has_strength(self)
       class(body_type), intent(in) :: self
+      integer :: i
 
-      has_strength = self%yield_strength > 0.0_wp
-      if (self%elasticity%is_layered()) has_strength = has_strength .or. any(self%elasticity%layer%yield_strength > 0.0_wp)
+      has_strength = any([(self%strength_of(i) > 0.0_wp, i=1, self%elasticity%layer_count() + 1)])
    end function has_strength
 
    !> Whether the body has a surface at x. `parabolic`: the parabola of a circle is unlimited, unless it deforms as a circle.

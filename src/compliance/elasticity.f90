@@ -51,10 +51,12 @@ module mfv_elasticity
       procedure :: pressure_stretches
       procedure :: has_datum
       procedure :: layers
+      procedure :: layer_count
       procedure :: coat
       procedure :: find_surface_stress
       procedure :: prepare_stress
       procedure :: material_of
+      procedure :: thickness
       procedure :: depth_of
       procedure :: layer_at
       procedure :: near_field
@@ -83,8 +85,16 @@ contains
    pure logical function is_layered(self)
       class(elasticity_type), intent(in) :: self
 
-      is_layered = allocated(self%layer)
+      is_layered = self%layer_count() > 0
    end function is_layered
+
+   !> Number of its layers.
+   pure integer function layer_count(self)
+      class(elasticity_type), intent(in) :: self
+
+      layer_count = 0
+      if (allocated(self%layer)) layer_count = size(self%layer)
+   end function layer_count
 
    !> Whether a pressure can cause tension along a straight surface: by its material, see mfv_material, on layers, or where it
    !> repeats, as its mean strain is zero there.
@@ -132,7 +142,7 @@ contains
       real(wp) :: reach
 
       if (.not. self%is_layered()) return
-      reach = maxval(distant*[length, self%depth_of(size(self%layer))])
+      reach = maxval(distant*[length, self%thickness()])
       if (allocated(self%layer_stress)) then
          if (self%layer_stress%reach >= reach) return
          deallocate (self%layer_stress)
@@ -159,6 +169,14 @@ contains
       if (layer <= size(self%layer)) material = self%layer(layer)%material
    end function material_of
 
+   !> Thickness of all layers, length.
+   pure real(wp) function thickness(self)
+      class(elasticity_type), intent(in) :: self
+
+      thickness = 0.0_wp
+      if (self%is_layered()) thickness = self%depth_of(size(self%layer))
+   end function thickness
+
    !> Depth of the lower side of a layer below the surface, length.
    pure real(wp) function depth_of(self, layer) result(depth)
       class(elasticity_type), intent(in) :: self
@@ -167,12 +185,13 @@ contains
       depth = sum(self%layer(:layer)%thickness)
    end function depth_of
 
-   !> Number of the layer at a depth, length, of two that meet there the upper one; size(layer) + 1: the base.
+   !> Number of the layer at a depth below the surface, length, of two that meet there the upper one; layer_count + 1: the base.
    pure integer function layer_at(self, depth) result(number)
       class(elasticity_type), intent(in) :: self
       real(wp), intent(in) :: depth
 
-      number = layer_at_depth(self%layer%thickness, depth)
+      number = 1
+      if (self%is_layered()) number = layer_at_depth(self%layer%thickness, depth)
    end function layer_at
 
    !> The constants for tractions that vary over a length: of the near field or, with layers, of a wave of this length over 2 pi.

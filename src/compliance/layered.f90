@@ -9,7 +9,6 @@ module mfv_layered
    use mfv_near_field, only: near_field_type
    use mfv_smooth_kernel
    use mfv_toeplitz, only: new_toeplitz, toeplitz_type
-   use mfv_tolerances, only: rounding
    implicit none
    private
    public :: layered_type, new_layered
@@ -85,22 +84,14 @@ contains
       do i = 0, nodes - 1
          call self%kernels_at(i*self%interval, self%interval, self%kernel(i, :))
       end do
-      ! Of layers that are not oblique it is round-off.
-      if (maxval(abs(self%kernel(:, mixed_kernel))) <= rounding*maxval(abs(self%kernel(:, normal_kernel)))) &
-         self%kernel(:, mixed_kernel) = 0.0_wp
+      ! Else it is round-off.
+      if (.not. self%layers%is_oblique()) self%kernel(:, mixed_kernel) = 0.0_wp
       self%direct = new_toeplitz(self%kernel(:, normal_kernel), other=self%kernel(:, tangential_kernel))
       self%odd = new_toeplitz(0.0_wp*self%kernel(:, odd_kernel), self%kernel(:, odd_kernel))
       self%all = new_toeplitz(self%kernel(:, normal_kernel), -self%kernel(:, odd_kernel), self%kernel(:, tangential_kernel))
-      if (is_oblique(self)) self%mixed = new_toeplitz(self%kernel(:, mixed_kernel))
+      if (self%layers%is_oblique()) self%mixed = new_toeplitz(self%kernel(:, mixed_kernel))
       self%block_values = smooth_kernels*nodes
    end subroutine resize
-
-   !> Whether pressure causes even displacements along the surface: an oblique layer.
-   pure logical function is_oblique(self)
-      class(layered_type), intent(in) :: self
-
-      is_oblique = any(abs(self%kernel(:, mixed_kernel)) > 0.0_wp)
-   end function is_oblique
 
    !> See mfv_kernel_compliance: the functions of mfv_smooth_kernel with those of the first layer.
    pure subroutine kernels_at(self, distance, width, kernels)
@@ -168,7 +159,7 @@ contains
       if (.not. any(self%has_block([block_wt, block_up]))) return
       call self%odd%multiply(pressure, by_block(:, block_wt), shear, by_block(:, block_up))
       by_block(:, [block_wt, block_up]) = -by_block(:, [block_wt, block_up])
-      if (is_oblique(self)) then
+      if (self%layers%is_oblique()) then
          call self%mixed%multiply(shear, even(:, 1), pressure, even(:, 2))
          by_block(:, block_wt) = by_block(:, block_wt) + even(:, 1)
          by_block(:, block_up) = by_block(:, block_up) + even(:, 2)
@@ -184,7 +175,7 @@ contains
       real(wp), intent(out) :: normal(:), tangential(:)
       real(wp) :: by_block(size(pressure), 4)
 
-      if (all(self%has_block) .and. .not. is_oblique(self)) then
+      if (all(self%has_block) .and. .not. self%layers%is_oblique()) then
          call self%all%multiply(pressure, normal, shear, tangential)
       else
          call self%products(pressure, shear, by_block)
@@ -203,7 +194,7 @@ contains
       normal = 0.0_wp
       if (.not. self%has_block(block_wt)) return
       call self%odd%multiply_odd(-shear, normal)
-      if (.not. is_oblique(self)) return
+      if (.not. self%layers%is_oblique()) return
       call self%mixed%multiply(shear, even, 0.0_wp*shear, unused)
       normal = normal + even
    end subroutine normal_by_shear

@@ -13,6 +13,7 @@ module mfv_layers
    use mfv_kinds, only: wp
    use mfv_material, only: material_type
    use mfv_near_field, only: near_field_of, near_field_type
+   use mfv_tolerances, only: rounding
    implicit none
    private
    public :: layer_type, layers_type, new_layers, loads, is_moderate, layer_at_depth
@@ -66,7 +67,6 @@ module mfv_layers
       procedure :: nearest_image
       procedure :: slant
       procedure :: is_oblique
-      procedure :: wave_layer
    end type layers_type
 
 contains
@@ -282,12 +282,12 @@ contains
       real(wp) :: values(3, loads)
       complex(wp), parameter :: none(2, 2) = 0.0_wp
 
-      values = real(wave_stress(self%wave_layer(number), none, unity), wp)
+      values = real(wave_stress(wave_layer(self, number), none, unity), wp)
    end function uniform_stresses
 
    !> A layer, or the base.
    pure type(wave_layer_type) function wave_layer(self, number)
-      class(layers_type), intent(in) :: self
+      type(layers_type), intent(in) :: self
       integer, intent(in) :: number
 
       if (number > size(self%layer)) then
@@ -406,13 +406,21 @@ contains
       slant = max(self%base%slant, maxval(self%layer%slant))
    end function slant
 
-   !> Whether the material of a layer, or of the base, has no axes along the surface.
+   !> Whether the material of a layer, or of the base, has no axes along the surface, beyond round-off of turning it.
    pure logical function is_oblique(self)
       class(layers_type), intent(in) :: self
       integer :: i
 
-      is_oblique = any(abs(self%base%material%compliance(4:5)) > 0.0_wp) .or. &
-                   any([(any(abs(self%layer(i)%material%compliance(4:5)) > 0.0_wp), i=1, size(self%layer))])
+      is_oblique = any([(has_none(self%layer(i)%material%compliance), i=1, size(self%layer)), &
+                        has_none(self%base%material%compliance)])
+
+   contains
+
+      pure logical function has_none(compliance)
+         real(wp), intent(in) :: compliance(6)
+
+         has_none = maxval(abs(compliance(4:5))) > rounding*compliance(1)
+      end function has_none
    end function is_oblique
 
 end module mfv_layers

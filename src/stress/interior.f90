@@ -6,15 +6,15 @@ module mfv_interior
    use mfv_body, only: body_type
    use mfv_interior_circle, only: circle_load_type, longest_element, new_circle_load
    use mfv_interior_layers, only: layered_load_type, new_layered_load
-   use mfv_interior_half_plane, only: half_plane_load_type, new_half_plane_load
+   use mfv_interior_half_plane, only: half_plane_load_type, new_half_plane_load, surface_stress_of
    use mfv_kinds, only: wp
    use mfv_material, only: material_type
    use mfv_surface_tractions, only: find_closed_elements, find_traction_elements, traction_elements_type, zone_list_type
    use mfv_tolerances, only: certified, significant
    implicit none
    private
-   public :: interior_type, new_interior, has_interior, von_mises_stress, tresca_stress, principal_stresses, polar_stress
-   public :: stress_xx, stress_yy, stress_xy, stress_zz, stress_count, stress_names, stress_von_mises
+   public :: interior_type, new_interior, has_interior, von_mises_stress, tresca_stress, polar_stress
+   public :: stress_xx, stress_yy, stress_xy, stress_count, stress_names
 
    !> Indices of the result of `stress`.
    integer, parameter :: stress_xx = 1, stress_yy = 2, stress_xy = 3, stress_zz = 4
@@ -59,7 +59,6 @@ module mfv_interior
       procedure :: half_width
       procedure :: surface
       procedure :: middle
-      procedure :: contains_point
       procedure :: centre
       procedure :: kinks
       procedure :: knots_apart
@@ -111,7 +110,7 @@ contains
          call find_closed_elements(arc, width, pressure, self%side*shear, seen%turn, longest, self%elements)
       else
          call find_traction_elements(arc, width, pressure, self%side*shear, seen, longest, self%elements)
-         if (zones%joined) call join_ends(self%elements, zones%period)
+         if (zones%period > 0.0_wp) call join_ends(self%elements, zones%period)
       end if
       associate (e => self%elements)
          if (self%body%deforms_as_circle()) then
@@ -125,13 +124,8 @@ contains
             self%circle = new_circle_load(body%is_disk(), body%elasticity%material%kolosov, e%from, e%to, &
                                           polar(self, radial, e%from, e%first), polar(self, radial, e%to, e%last))
          else
-            associate (material => body%elasticity%material, period => body%elasticity%period/self%length)
-               if (period > 0.0_wp) then
-                  self%half_plane = new_half_plane_load(material, e%from, e%to, e%first, e%last, period, zones%middle/self%length)
-               else
-                  self%half_plane = new_half_plane_load(material, e%from, e%to, e%first, e%last)
-               end if
-            end associate
+            self%half_plane = new_half_plane_load(body%elasticity%material, e%from, e%to, e%first, e%last, &
+                                                  body%elasticity%period/self%length, zones%middle/self%length)
             if (body%elasticity%is_layered()) self%layers = &
                new_layered_load(self%body%elasticity%layer_stress, self%length*e%from, self%length*e%to, e%first, e%last)
          end if
@@ -178,9 +172,10 @@ contains
 
    !> Whether the point (x, y), lengths, is in the body or on its surface.
    pure logical function contains_point(self, x, y)
-      class(interior_type), intent(in) :: self
+      type(interior_type), intent(in) :: self
       real(wp), intent(in) :: x, y
       real(wp) :: from_origin(2)
+      type(material_type) :: material
       real(wp), parameter :: tolerance = 4.0_wp*epsilon(1.0_wp)
 
       if (self%body%deforms_as_circle()) then
@@ -189,11 +184,8 @@ contains
             contains_point = merge(beyond <= tolerance, beyond >= -tolerance, self%body%is_disk())
          end associate
       else
-         contains_point = self%side*y <= 0.0_wp
-         if (self%body%elasticity%is_layered()) then
-            if (.not. self%body%elasticity%base%exists()) contains_point = contains_point .and. &
-                                                                      self%body%layer_at(abs(y)) <= size(self%body%elasticity%layer)
-         end if
+         material = self%body%elasticity%material_of(self%body%elasticity%layer_at(abs(y)))
+         contains_point = self%side*y <= 0.0_wp .and. material%exists()
       end if
    end function contains_point
 
@@ -216,7 +208,7 @@ contains
 
       values = ieee_value(1.0_wp, ieee_quiet_nan)
       if (.not. (ieee_is_finite(x) .and. ieee_is_finite(y))) return
-      if (.not. self%contains_point(x, y)) return
+      if (.not. contains_point(self, x, y)) return
       layer = 1
       if (self%body%deforms_as_circle()) then
          from_origin = coordinates_in_radii(self, x, y)
@@ -226,7 +218,7 @@ contains
          values(stress_yy) = turned(1)
          values(stress_xy) = merge(turned(3), -turned(3), self%body%is_disk())
       else
-         layer = self%body%layer_at(abs(y))
+         layer = self%body%elasticity%layer_at(abs(y))
          values(:3) = stress_below(self, x, abs(y), layer)
       end if
       values(stress_zz) = stress_zz_of(self, layer, values(:3))
@@ -294,9 +286,7 @@ contains
       if (.not. self%body%elasticity%is_layered()) return
       depth = 2.0_wp*self%half_width()
       if (present(deepest)) depth = max(depth, deepest)
-      associate (thickness => self%body%elasticity%depth_of(size(self%body%elasticity%layer)))
-         call self%layers%table%prepare(min(depth, most*(thickness + 2.0_wp*self%half_width())))
-      end associate
+      call self%layers%table%prepare(min(depth, most*(self%body%elasticity%thickness() + 2.0_wp*self%half_width())))
    end subroutine prepare
 
    !> What a von Mises stress at a depth, length, counts in the search for the largest one: of layers with different yield strengths
@@ -308,9 +298,9 @@ contains
       integer :: i, layer
 
       weight = 1.0_wp
-      if (.not. (self%body%elasticity%is_layered() .and. self%body%has_strength())) return
-      largest = maxval([(self%body%strength_of(i), i=1, size(self%body%elasticity%layer) + 1)])
-      layer = self%body%layer_at(depth)
+      if (.not. self%body%has_strength()) return
+      largest = maxval([(self%body%strength_of(i), i=1, self%body%elasticity%layer_count() + 1)])
+      layer = self%body%elasticity%layer_at(depth)
       weight = 0.0_wp
       if (self%body%strength_of(layer) > 0.0_wp) weight = largest/self%body%strength_of(layer)
    end function weight_at
@@ -480,11 +470,8 @@ contains
       if (n < 2) return
       associate (elements => self%elements)
          length = elements%to - elements%from
-         associate (material => self%body%elasticity%material)
-            slope = aimag(elements%last - elements%first)/length
-            if (material%pressure_stretches()) slope = aimag(material%root_sum)*slope &
-                                                      - aimag(material%root_product)*real(elements%last - elements%first, wp)/length
-         end associate
+         slope = surface_stress_of(self%body%elasticity%material, 0.0_wp, 0.0_wp, real(elements%last - elements%first, wp)/length, &
+                                   aimag(elements%last - elements%first)/length)
          change = 0.0_wp
          where (.not. elements%from(2:) > elements%to(:n - 1)) change = abs(slope(2:) - slope(:n - 1))*(length(2:) + length(:n - 1))
          is_place = .false.

@@ -57,7 +57,7 @@ module mfv_interior_half_plane
 contains
 
    !> Elements from `from` to `to`, lengths (ascending, for speed), with tractions p + i tau linear from `first` to `last`,
-   !> force/length^2; shapes (elements). `period`: length after which they repeat, by default not; `middle`
+   !> force/length^2; shapes (elements). `period`: length after which they repeat, 0 and by default: not; `middle`
    !> of the period with the elements, length.
    pure type(half_plane_load_type) function new_half_plane_load(material, from, to, first, last, period, middle) &
       result(self)
@@ -65,23 +65,24 @@ contains
       real(wp), intent(in) :: from(:), to(:)
       complex(wp), intent(in) :: first(:), last(:)
       real(wp), intent(in), optional :: period, middle
+      real(wp) :: length
       integer :: n
 
+      length = 0.0_wp
+      if (present(period)) length = period
       self%material = material
       self%root = material%roots()
-      self%from = from
-      self%to = to
       self%first = first
       self%last = last
-      if (present(period)) then
-         if (present(middle)) self%middle = middle
-         self%from = from - self%middle
-         self%to = to - self%middle
+      if (length > 0.0_wp .and. present(middle)) self%middle = middle
+      self%from = from - self%middle
+      self%to = to - self%middle
+      if (length > 0.0_wp) then
          self%near_images = images_each_side
          n = size(from)
-         if (n > 0) self%meets = abs(to(n) - from(1) - period) < significant*period
-         self%images = new_periodic_images(period, self%from, self%to, first, last)
-         self%lateral = material%lateral_ratio()*sum(0.5_wp*real(first + last, wp)*(to - from))/period
+         if (n > 0) self%meets = abs(to(n) - from(1) - length) < significant*length
+         self%images = new_periodic_images(length, self%from, self%to, first, last)
+         self%lateral = material%lateral_ratio()*sum(0.5_wp*real(first + last, wp)*(to - from))/length
       end if
       self%tree = new_straight_tree(self%from, self%to, self%first, self%last)
    end function new_half_plane_load

@@ -46,9 +46,7 @@ contains
       type(search_type) :: search
       integer :: best, start
 
-      largest%value = von_mises_stress(interior%remote_stress(1))
-      weight = 1.0_wp
-      if (interior%body%elasticity%is_layered()) call find_largest_remote(interior, largest%value, weight)
+      call find_largest_remote(interior, largest%value, weight)
       if (largest%value > 0.0_wp) largest%x = ieee_value(1.0_wp, ieee_quiet_nan)
       largest%y = largest%x
       length = 2.0_wp*interior%half_width()
@@ -91,9 +89,9 @@ contains
       largest = 0.0_wp
       weight = 1.0_wp
       associate (elasticity => interior%body%elasticity)
-         do i = 1, size(elasticity%layer) + 1
-            depth = 2.0_wp*elasticity%depth_of(size(elasticity%layer))
-            if (i <= size(elasticity%layer)) depth = elasticity%depth_of(i)
+         do i = 1, elasticity%layer_count() + 1
+            depth = 2.0_wp*elasticity%thickness()
+            if (i <= elasticity%layer_count()) depth = elasticity%depth_of(i)
             here = interior%weight_at(depth)
             value = von_mises_stress(interior%remote_stress(i))*here
             if (.not. value > largest) cycle
@@ -193,7 +191,7 @@ contains
       integer :: layer
 
       if (.not. interior%half_width() > 0.0_wp) return
-      do layer = 1, size(interior%body%elasticity%layer)
+      do layer = 1, interior%body%elasticity%layer_count()
          places = places_at_depth(interior, interior%body%elasticity%depth_of(layer))
          call keep(interface_tension, tension)
          call keep(interface_shear, shear)
@@ -232,7 +230,7 @@ contains
       if (.not. interior%body%has_strength()) return
       places = interior%zone_edges(most_between=across)
       associate (elasticity => interior%body%elasticity)
-         below = [0.0_wp, interior%half_width()*depths_below, (elasticity%depth_of(i), i=1, size(elasticity%layer))]
+         below = [0.0_wp, interior%half_width()*depths_below, (elasticity%depth_of(i), i=1, elasticity%layer_count())]
       end associate
       do j = 1, size(below)
          von_mises = max(von_mises, maxval([(von_mises_at(interior, places(i), below(j)), i=1, size(places))]))

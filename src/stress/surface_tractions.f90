@@ -31,12 +31,10 @@ module mfv_surface_tractions
       logical, allocatable :: sharp(:, :)
       type(near_field_type) :: pair
       real(wp) :: turn = 0.0_wp
-      !> Length after which the surface repeats, or 0; whether it is loaded all around a circle; whether sharp edges are its ends.
-      real(wp) :: period = 0.0_wp
+      !> Length after which the surface repeats if all sharp edges are ends of it, else 0; its middle, length; whether a circle is
+      !> loaded all around.
+      real(wp) :: period = 0.0_wp, middle = 0.0_wp
       logical :: closed = .false.
-      logical :: joined = .false.
-      !> Middle of that period, length.
-      real(wp) :: middle = 0.0_wp
       !> Minimum of elements in all contact zones: with fewer, the point of the largest von Mises stress, a flat maximum, would
       !> move to their ends.
       integer :: fewest_elements = 300

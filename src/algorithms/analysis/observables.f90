@@ -21,7 +21,7 @@ module mfv_observables
    implicit none
    private
    public :: observable_count, observables, observable_place, observed_type, observe, error_none, error_load, error_smooth, &
-             error_edges, error_stick, error_pressure, error_shear, error_local, error_place, error_edge_field
+             error_edges, error_stick, error_pressure, error_shear, error_local, error_place
 
    !> How the discretisation error of an observable behaves: not estimated (counts, rows, and numbers with the relative errors of
    !> their factors); none where the load is prescribed; smooth; that of edges of the contact, of stick zones, of the peaks of

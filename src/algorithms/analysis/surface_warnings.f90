@@ -33,7 +33,7 @@ contains
       if (.not. any(contact)) return
       call check_end
       if (body%is_sampled()) call check_interpolation
-      if (body%is_sampled() .and. simulation%contact%model%scene%mesh%period > 0.0_wp) call check_step
+      if (body%is_sampled() .and. body%period > 0.0_wp) call check_step
       if (body%dropouts > 0) call warn_of_dropouts
       if (.not. body%is_pointed()) return
       angle = atan(body%coefficient)*180.0_wp/pi
@@ -48,7 +48,7 @@ contains
          real(wp), parameter :: visible_step = 0.01_wp
          real(wp) :: ends(2), heights(2)
 
-         ends = 0.5_wp*simulation%contact%model%scene%mesh%period*[-1, 1]
+         ends = 0.5_wp*body%period*[-1, 1]
          if (.not. all(body%has_surface(ends))) return
          heights = body%recess(ends, .false.)
          if (abs(heights(2) - heights(1)) <= visible_step*(maxval(body%height) - minval(body%height))) return

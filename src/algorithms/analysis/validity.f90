@@ -333,8 +333,8 @@ contains
 
          words = ''
          if (.not. body%elasticity%is_layered()) return
-         words = ' in layer '//to_text(body%layer_at(abs(stress%y)))
-         if (body%layer_at(abs(stress%y)) > size(body%elasticity%layer)) words = ' below the layers'
+         words = ' in layer '//to_text(body%elasticity%layer_at(abs(stress%y)))
+         if (body%elasticity%layer_at(abs(stress%y)) > body%elasticity%layer_count()) words = ' below the layers'
       end function in_layer
    end subroutine check_yield
 

@@ -19,8 +19,6 @@ module mfv_edge_intensity
 
    !> Nodes that an asymptote is found from; the next one must agree.
    integer, parameter :: samples = 3
-   !> Most intervals of an unequal mesh for its discrete solution.
-   integer, parameter :: most_intervals = 32
 
 contains
 
@@ -194,7 +192,7 @@ contains
       solution = new_graded_solution(inwards(model%width, patch, side), power)
    end function graded_at
 
-   !> Values of the outermost nodes of a patch from its left (`side` -1) or right (1) edge inwards, `most` (or 32) at most.
+   !> Values of the outermost nodes of a patch from its left (`side` -1) or right (1) edge inwards, `most` at most.
    pure function inwards(values, patch, side, most)
       real(wp), intent(in) :: values(:)
       type(patch_type), intent(in) :: patch
@@ -203,9 +201,8 @@ contains
       real(wp), allocatable :: inwards(:)
       integer :: number
 
-      number = most_intervals
-      if (present(most)) number = most
-      number = min(patch%last - patch%first + 1, number)
+      number = patch%last - patch%first + 1
+      if (present(most)) number = min(number, most)
       associate (edge => outermost(patch, side))
          inwards = values(edge:edge - side*(number - 1):-side)
       end associate

@@ -112,7 +112,8 @@ contains
       model%tangential = scene%tangential()
       model%moves = scene%moves()
       call choose_mesh(scene, nodes, interval, model%growing)
-      if (covers_period(scene, nodes, interval) .and. .not. scene%mesh%has_middle) call choose_middle(model%scene, nodes)
+      if (scene%mesh%period > 0.0_wp .and. .not. (model%growing .or. allocated(scene%mesh%ends) .or. scene%mesh%has_middle)) &
+         call choose_middle(model%scene, nodes)
       if (scene%is_neat() .and. .not. scene%mesh%has_middle) call turn_to_load(model%scene)
       call model%build_compliance(nodes, interval)
       allocate (model%worn(nodes), model%wear(nodes), source=0.0_wp)
@@ -135,7 +136,7 @@ contains
       else if (scene%lower%is_matrix()) then
          nodes = size(scene%lower%position)
          interval = sum(scene%lower%elasticity%width)/nodes
-      else if (scene%is_neat() .or. scene%mesh%period > 0.0_wp .and. .not. small_in_period(scene)) then
+      else if (scene%repeat_length() > 0.0_wp .and. .not. small_in_period(scene)) then
          interval = scene%repeat_length()/nodes
          growing = .false.
       else if (scene%mesh%whole_circle) then
@@ -163,23 +164,13 @@ contains
       small_in_period = expected > 0.0_wp .and. expected < small*scene%mesh%period
    end function small_in_period
 
-   !> Whether equal intervals cover the period of surfaces that repeat.
-   pure logical function covers_period(scene, nodes, interval)
-      type(scene_type), intent(in) :: scene
-      integer, intent(in) :: nodes
-      real(wp), intent(in) :: interval
-
-      covers_period = scene%mesh%period > 0.0_wp .and. .not. allocated(scene%mesh%ends) .and. &
-                      nodes*interval > scene%mesh%period*(1.0_wp - significant)
-   end function covers_period
-
    !> Whether there is a length from which to choose a mesh: that of the user, of a shape, or of the contact under the targets of
    !> the steps.
    pure logical function can_choose_mesh(scene)
       type(scene_type), intent(in) :: scene
 
-      can_choose_mesh = scene%lower%is_matrix() .or. allocated(scene%mesh%ends) .or. scene%mesh%period > 0.0_wp .or. &
-                        scene%mesh%half_width > 0.0_wp .or. scene%mesh%whole_circle .or. scene%is_neat() .or. &
+      can_choose_mesh = scene%lower%is_matrix() .or. allocated(scene%mesh%ends) .or. scene%repeat_length() > 0.0_wp .or. &
+                        scene%mesh%half_width > 0.0_wp .or. scene%mesh%whole_circle .or. &
                         min(scene%lower%half_extent(), scene%upper%half_extent()) < huge(1.0_wp)
       if (.not. can_choose_mesh) can_choose_mesh = largest_half_width(scene, huge(1.0_wp)) > 0.0_wp
    end function can_choose_mesh

@@ -7,7 +7,7 @@ module mfv_motions
    use mfv_kinds, only: wp
    implicit none
    private
-   public :: motion_type, motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
+   public :: motions, motion_count, motion_approach, motion_shift, motion_rotation, motion_lower_bulk, &
              motion_upper_bulk, motion_interference, motion_wear, user_motions, bulk_motions, control_keep, control_force, &
              control_displacement, controlled_key, first_control, arm_unit
 

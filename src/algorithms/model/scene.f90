@@ -19,7 +19,7 @@ module mfv_scene
    private
    public :: scene_type, both_rigid, mesh_request_type, step_type, method_type, control_keep, control_force, control_displacement, &
              most_cycles, most_of_datum, algorithm_mfv, algorithm_conventional, stepping_event, stepping_nominal, stepping_leap, &
-             stepping_auto, integration_second_order, integration_explicit, solver_auto, solver_dgesv, solver_reduced, solver_fft, &
+             stepping_auto, integration_explicit, solver_auto, solver_dgesv, solver_reduced, solver_fft, &
              algorithm_names, stepping_names, integration_names, solver_names, friction_tolerance_part, most_by_points, &
              accuracy_by_mesh, last_with_target
 
@@ -377,8 +377,7 @@ contains
 
       thickness = 0.0_wp
       if (.not. self%is_all_on_rigid()) return
-      if (self%has_layers(.false.)) thickness = sum(self%lower%elasticity%layer%thickness)
-      if (self%has_layers(.true.)) thickness = thickness + sum(self%upper%elasticity%layer%thickness)
+      thickness = self%lower%elasticity%thickness() + self%upper%elasticity%thickness()
    end function compressed_thickness
 
    !> Whether the lower or the `upper` body has layers.
@@ -409,8 +408,7 @@ contains
    pure logical function has_datum(self)
       class(scene_type), intent(in) :: self
 
-      has_datum = .not. (self%lower%circular() .or. self%upper%circular() .or. self%lower%is_matrix())
-      if (self%is_layered()) has_datum = has_datum .and. .not. self%is_all_on_rigid()
+      has_datum = .not. (self%lower%circular() .or. self%upper%circular() .or. self%is_all_on_rigid())
    end function has_datum
 
    !> Datum of the displacements of both bodies together, length: the mean of the logarithms of their datums, weighted with their
@@ -632,9 +630,7 @@ contains
             zones%sharp(side, i) = ends_with_body(self, arc, width, zones%contact(side, i), 2*side - 3)
          end do
       end do
-      zones%period = ratio*self%repeat_length()
-      zones%joined = zones%period > 0.0_wp
-      if (zones%joined) zones%joined = all(self%repeats_beyond(pack(zones%contact, zones%sharp)))
+      if (all(self%repeats_beyond(pack(zones%contact, zones%sharp)))) zones%period = ratio*self%repeat_length()
       zones%contact = ratio*zones%contact
       if (self%coupling == coupling_full) zones%pair = self%near_field()
       zones%middle = self%mesh%middle

@@ -87,10 +87,11 @@ contains
       force = maxval(scene%steps%extreme(motion_approach, control_force))
       if (force > 0.0_wp .and. .not. indenter%is_flat() .and. scene%modulus() > 0.0_wp) &
          half_width = indenter%half_width(0.5_wp*force/scene%modulus())
-      if (.not. scene%is_layered() .or. .not. half_width > 0.0_wp) return
+      if (.not. half_width > 0.0_wp) return
       ! The modulus is that over the half-width.
       do i = 1, most_iterations
          over_width = scene%near_field_over(half_width)
+         if (abs(over_width%modulus() - scene%modulus()) <= 0.0_wp) exit
          half_width = (half_width**2*indenter%half_width(0.5_wp*force/over_width%modulus()))**(1.0_wp/3.0_wp)
       end do
    end function half_width_of_forces

@@ -90,10 +90,9 @@ contains
          !> E* of diamond is 1.1e12 Pa.
          real(wp), parameter :: stiffest = 2.0e12_wp
          real(wp) :: modulus, pascals
+         integer :: i
 
-         modulus = modulus_of(body%elasticity%material)
-         if (body%elasticity%is_layered()) &
-            modulus = max(modulus, modulus_of(body%elasticity%base), maxval(modulus_of(body%elasticity%layer%material)))
+         modulus = maxval([(modulus_of(body%elasticity%material_of(i)), i=1, body%elasticity%layer_count() + 1)])
          pascals = modulus*newtons(force)/metres**2
          if (.not. pascals > stiffest) return
          call add_text(warnings, 'the '//name//' body, or a layer of it, has a contact modulus E* of '//to_text(modulus, 2)// &

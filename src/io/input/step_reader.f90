@@ -141,7 +141,7 @@ contains
       integer :: body
       logical :: upper
 
-      if (scene%mesh%period > 0.0_wp .and. .not. scene%can_repeat(motion)) then
+      if (.not. scene%can_repeat(motion)) then
          call reader%complain(group, number, key, 'has no effect that repeats with the period in &mesh; remove one of them', error)
          return
       end if

@@ -34,9 +34,8 @@ module mfv_result_fields
    use mfv_zone_edges, only: find_patches, find_zone_edges, largest_shear, patch_type, zone_edges_type
    implicit none
    private
-   public :: field_type, list_type, result_groups, group_fields, field_named, step_group, along_nodes, along_records, &
-             along_companions, along_cycles, along_patches, along_nothing, scale_count, scale_group, scale_name
-   public :: result_attributes
+   public :: field_type, list_type, result_groups, group_fields, field_named, step_group, along_nodes, &
+             along_nothing, scale_count, scale_group, scale_name, result_attributes
 
    !> Dimension along which the values of a field are listed.
    integer, parameter :: along_nothing = 0, along_nodes = 1, along_records = 2, along_companions = 3, along_cycles = 4, &
