@@ -22,7 +22,7 @@ from . import edges_figure as edges_picture
 from .codes import EventKind, NodeStatus
 from .errors import MfvError
 from .result import Group, Result, is_last
-from .stress import NAMES, Largest, StressField, contact_edges, drawn_at, grid, is_radial, stored, stress, surface_at
+from .stress import NAMES, Largest, StressField, contact_edges, drawn_at, grid, is_radial, radius_of, stored, stress, surface_at
 from .views import (
     contact,
     friction_limits,
@@ -501,7 +501,7 @@ def surface_stress(result: Result, ax: Axes | None = None, step: int | None = No
     body, chosen = _stressed_body(result), step or len(result.steps)
     turns = list(_named_records(result, result.history.tangential_force, step).values()) if result.cycles and step is None else []
     shown = [number for number in turns if number < chosen and result.steps[number - 1].step == result.cycles.step[-1]]
-    name = "sigma_xx" if result.scene.get(f"{body}_radius") is None else "sigma_thetatheta"
+    name = "sigma_xx" if radius_of(result, body) is None else "sigma_thetatheta"
     for number, style in zip([*shown, step], [*((0, (k + 1, 1.5)) for k in range(len(shown))), "-"]):
         x = _surface_points(result, body, number)
         field = stress(result, *surface_at(result, body, x), body=body, step=number)

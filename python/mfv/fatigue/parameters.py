@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ..load_history import kept_states
 from ..result import Result
 from ..stress import surface_nodes
-from .stress_cycle import StressCycle, last_cycle, stress_cycle
+from .stress_cycle import StressCycle, last_cycle, stress_cycle, warn_of_doubt
 
 Array = NDArray[np.float64]
 
@@ -157,6 +157,7 @@ def ruiz(result: Result, *, body: str = "lower", states: Sequence[int] | None = 
     """
     if result.attributes["friction_law"] == "none":
         raise ValueError("Ruiz's parameters need friction: without a &friction law there is neither shear nor slip")
+    warn_of_doubt(result, "largest_slip_range")
     numbers = last_cycle(result) if states is None else tuple(states)
     history = [kept_states(result).at(number) for number in numbers]
     x, y, slope = surface_nodes(result, body)
