@@ -65,7 +65,8 @@ def read(
     `unit`: of the positions and heights that are returned, and of `spacing`, `lambda_s` and `lambda_c`. `file_unit`: that of a file
     which names none; if omitted: `unit`, with a note. `outwards`: whether heights of the file are positive out of the material, as
     those of instruments are; they are returned as the recess, with the other sign. If omitted: unless the heading of a text says that
-    they are the recess, as that of `mfv profile` does. `spacing`: of heights without positions. Areal maps: `along` x (if omitted) or y, `line` counts lines from 1 across it; 'mean': the mean of all lines; if omitted: 'middle'.
+    they are the recess, as that of `mfv profile` does. `spacing`: of heights without positions. Areal
+    maps: `along` x (if omitted) or y, `line` counts lines from 1 across it; 'mean': the mean of all lines; if omitted: 'middle'.
     `channel`: number from 1 or name; if omitted: the default of the format. Gaussian filters of ISO 16610-21: waves shorter than
     `lambda_s` and longer than `lambda_c` are removed (half of the amplitude at that wavelength); positions that are not at equal
     distances are interpolated first. The filters need scipy, files of instruments SurfaceTopography. Raises

@@ -169,7 +169,8 @@ class Iwan(_Saved):
     def c_source(self, name: str = "joint", measured: Measurement | None = None) -> str:
         """The joint as a C header that needs no other file: an evaluator without allocation, and the constant `name`.
 
-        `measured`: what it was fitted to, for a comment with case, units, amplitudes and warnings. Raises ValueError if the name is not one of C, or has a meaning there or in the header.
+        `measured`: what it was fitted to, for a comment with case, units, amplitudes and warnings. Raises
+        ValueError if the name is not one of C, or has a meaning there or in the header.
         """
         if not (name.isidentifier() and name.isascii()):
             raise ValueError(f"{name!r} is not a name in C")
