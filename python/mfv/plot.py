@@ -21,7 +21,7 @@ from . import drawing, patches_figure
 from . import edges_figure as edges_picture
 from .codes import EventKind, NodeStatus
 from .errors import MfvError
-from .result import Group, Result, is_last
+from .result import Group, Result, doubt, is_last
 from .stress import NAMES, Largest, StressField, contact_edges, drawn_at, grid, is_radial, radius_of, stored, stress, surface_at
 from .views import (
     contact,
@@ -165,8 +165,9 @@ def _cycle_caption(result: Result) -> str:
     seen, unit = result.observables, result.observables.unit("cycle_dissipation")
     parts = [
         f"{result.cycles.cycle.size} cycles",
-        f"the last cycle dissipates {seen.cycle_dissipation:.4g}{f' {unit}' if is_named(unit) else ''}",
-        f"loss factor {seen.loss_factor:.3g}" if "loss_factor" in seen else "",
+        f"the last cycle dissipates {seen.cycle_dissipation:.4g}{f' {unit}' if is_named(unit) else ''}"
+        + doubt(result, "cycle_dissipation"),
+        f"loss factor {seen.loss_factor:.3g}{doubt(result, 'loss_factor')}" if "loss_factor" in seen else "",
         f"change of the tractions over it {seen.cycle_change:.1e}",
     ]
     return " \N{MIDDLE DOT} ".join(part for part in parts if part)
@@ -207,15 +208,16 @@ def _scales(result: Result, field: StressField) -> str:
     """The scales of the picture, the largest von Mises stress and the largest tension, in the user's units."""
     unit, length = _unit(result.state.unit("pressure")), _unit(result.mesh.unit("x"))
     parts = [
-        f"$p_0$ = {field.largest_pressure:.4g}{unit}",
-        f"$a$ = {field.half_width:.4g}{length}",
-        f"largest von Mises stress {field.largest.value:.4g}{unit}"
+        f"$p_0$ = {field.largest_pressure:.4g}{unit}{doubt(result, 'peak_pressure')}",
+        f"$a$ = {field.half_width:.4g}{length}{doubt(result, 'contact_half_width')}",
+        f"largest von Mises stress {field.largest.value:.4g}{unit}{doubt(result, 'peak_pressure', f'largest_{field.body}_von_mises')}"
         if np.isfinite(field.largest.value)
         else "von Mises stress unbounded at a sharp corner",
     ]
     if field.tension.value > 0.0:
         parts[-1] += (
             f"\nlargest tension along the surface {field.tension.value:.4g}{unit} at $x$ = {_signed(field.tension.x)}{length}"
+            + doubt(result, f"{field.body}_tension")
         )
     return " \N{MIDDLE DOT} ".join(parts)
 
@@ -509,7 +511,7 @@ def surface_stress(result: Result, ax: Axes | None = None, step: int | None = No
         label = f"{'state ' if number else 'last state'}{number or ''}"
         ax.plot(x, field[name], color=color, linewidth=1.0, linestyle=style, label=f"{body} body, {label}")
         if number == step and np.isfinite(field.tension.x) and field.tension.value > 0.0:
-            _mark_tension(ax, field.tension, result)
+            _mark_tension(ax, field.tension, result, doubt(result, f"{body}_tension"))
     ax.set_ylabel(
         drawing.label(
             "stress along the surface", r"\sigma_{xx}" if name == "sigma_xx" else r"\sigma", result.state.unit("pressure")
@@ -519,8 +521,8 @@ def surface_stress(result: Result, ax: Axes | None = None, step: int | None = No
     return ax
 
 
-def _mark_tension(ax: Axes, peak: Largest, result: Result) -> None:
-    """Mark the largest tension with its value and place."""
+def _mark_tension(ax: Axes, peak: Largest, result: Result, note: str) -> None:
+    """Mark the largest tension with its value, a `note` and its place."""
     units = _unit(result.state.unit("pressure")), _unit(result.mesh.unit("x"))
     left, right = contact(result, [result.state])
     place = peak.x
@@ -528,7 +530,7 @@ def _mark_tension(ax: Axes, peak: Largest, result: Result) -> None:
         place = float(np.degrees(2.0 * np.arctan2(np.sign(peak.x) * abs(peak.y), abs(peak.x)))) if peak.x else 0.0
     beside = place < 0.5 * (left + right)
     ax.plot(place, peak.value, "o", color=drawing.MARKS, markersize=5, markerfacecolor="none", clip_on=False)
-    text = f"{peak.value:.4g}{units[0]}\nat $x$ = {_signed(peak.x)}{units[1]}"
+    text = f"{peak.value:.4g}{units[0]}{note}\nat $x$ = {_signed(peak.x)}{units[1]}"
     ax.annotate(text, (place, peak.value), xytext=(10 if beside else -10, -2), textcoords="offset points",
                 ha="left" if beside else "right", va="top", fontsize=9)  # fmt: skip
 
