@@ -279,11 +279,15 @@ def stress_contours(
 
 
 def parameter_contours(
-    field: ParameterMap, ax: Axes | None = None, *, colour_bar: bool = False, units: tuple[str, str] = ("", "")
+    field: ParameterMap, ax: Axes | None = None, *, colour_bar: bool = True, units: tuple[str, str] | None = None
 ) -> Axes:
     """Contours of a fatigue parameter on a grid, in the units of the case, with its maximum marked and there a line along the critical
-    plane. `colour_bar`: with a scale beside them. `units`: names of those of length and of the parameter, for the labels."""
-    ax = _axes(ax)
+    plane. `colour_bar`: with a scale beside them. `units`: names of those of length and of the parameter in place of the field's own."""
+    if ax is None:
+        size = 7.0, 1.2 + 5.5 * min(float(np.ptp(field.y) / np.ptp(field.x)), 1.0)
+        with matplotlib.rc_context(drawing.STYLE):
+            return parameter_contours(field, _axes(None, size), colour_bar=colour_bar, units=units)
+    units = units or field.units
     values = np.ma.masked_invalid(field.values)
     levels = MaxNLocator(15).tick_values(0.0, float(values.max()))
     contours = ax.contourf(field.x, field.y, values, levels=levels, cmap="viridis")
@@ -301,7 +305,8 @@ def parameter_contours(
     ax.set_xlabel(drawing.label("", "x", units[0]).strip())
     ax.set_ylabel(drawing.label("", "y", units[0]).strip())
     if colour_bar:
-        ax.figure.colorbar(contours, cax=ax.inset_axes((1.02, 0.0, 0.025, 1.0)), ticks=levels[::4])
+        bar = ax.figure.colorbar(contours, cax=ax.inset_axes((1.02, 0.0, 0.025, 1.0)), ticks=levels[::4])
+        bar.set_label(_unit(units[1]).strip())
     return ax
 
 
@@ -581,14 +586,14 @@ def _finished_curve(
     return ax
 
 
-def _axes(ax: Axes | None) -> Axes:
-    """The given axes, or those of a new figure of pyplot."""
+def _axes(ax: Axes | None, size: tuple[float, float] = (drawing.PANEL_WIDTH, drawing.PANEL_HEIGHT)) -> Axes:
+    """The given axes, or those of a new figure of pyplot of a size in inch."""
     if ax is not None:
         return ax
     from matplotlib import pyplot  # here, since it needs a display
 
     with matplotlib.rc_context(drawing.STYLE):
-        _, made = pyplot.subplots(figsize=(drawing.PANEL_WIDTH, drawing.PANEL_HEIGHT), layout="constrained")
+        _, made = pyplot.subplots(figsize=size, layout="constrained")
     return made
 
 

@@ -625,6 +625,13 @@ def test_upper_body_is_the_mirror_image() -> None:
     np.testing.assert_allclose(upper[:, ::-1, 0], lower[..., 0], rtol=1e-6)
 
 
+def test_units_of_parameters(pad: mfv.Result) -> None:
+    """Those of the case; strains have none; averages keep them."""
+    cycle = fatigue.averaged_cycle(pad, 1.0, 0.1, method="point")
+    assert cycle.units == fatigue.smith_watson_topper(cycle).units == fatigue.crossland(cycle, k=0.3).units == ("mm", "N/mm^2")
+    assert fatigue.fatemi_socie(cycle, yield_strength=300.0).units == ("mm", "1")
+
+
 def test_averages(pad: mfv.Result) -> None:
     """Averages over vanishing distances are the value at the hot spot; the line is the integral of stresses at its points."""
     tension = mfv.stress.stress(pad, 0.0, 0.0).tension
@@ -656,6 +663,8 @@ def test_ruiz(pad: mfv.Result) -> None:
     inner = np.abs(found.x) < 0.4
     assert np.all(pad.state.status[inner] == mfv.NodeStatus.STICK)
     assert np.max(found.first[inner]) < 1e-9 * np.max(found.first)
+    assert found.slip.max() == pytest.approx(float(pad.observables.largest_slip_range), rel=1e-12)
+    assert found.units == ("N/mm", "N^2/mm^3")
     place = int(np.argmax(found.second))
     assert found.x[place] < -0.9 * 1.39 and found.shear[place] == pytest.approx(0.65 * last.pressure[place], rel=1e-9)
     assert found.slip[place] == pytest.approx(abs(pad.steps[5].slip[place] - pad.steps[4].slip[place]), rel=1e-12)
@@ -768,6 +777,12 @@ def test_picture_of_a_map(side: float) -> None:
     tilted = fatigue.ParameterMap("Findley", x, y, values, angle, np.full(x.shape, np.radians(20.0)))
     ax = mfv.plot.parameter_contours(tilted, pyplot.figure().subplots())
     assert ax.get_title().endswith("30\N{DEGREE SIGN}, tilted 20\N{DEGREE SIGN} out of the plane")
+    named = fatigue.ParameterMap("Findley", x, y, values, angle, units=("mm", "N/mm^2"))
+    for given, label in ((None, "N/mm$^2$"), (("mm", "MPa"), "MPa")):
+        ax = mfv.plot.parameter_contours(named, units=given)
+        assert ax.get_xlabel() == "$x$ [mm]" and f"2.5 {label} at" in ax.get_title()
+        assert [bar.get_ylabel() for bar in ax.child_axes] == [label]
+    assert not mfv.plot.parameter_contours(named, colour_bar=False).child_axes
     pyplot.close("all")
 
 

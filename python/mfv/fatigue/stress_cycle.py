@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -36,7 +37,7 @@ ROUND_OFF = 4.0 * float(np.finfo(np.float64).eps)
 class StressCycle:
     """Stresses over a cycle at the points (x, y), lengths, of any shape; `stress` has the shape (states, *shape, 4) and the components
     sigma_xx, sigma_yy, sigma_xy, sigma_zz [force/length^2], tension positive. The body is isotropic with a `shear_modulus`
-    [force/length^2] and a `poisson_ratio`. Stresses from anywhere will do.
+    [force/length^2] and a `poisson_ratio`. `units`: names of those of lengths and stresses, for pictures. Stresses from anywhere will do.
     """
 
     x: Array
@@ -44,6 +45,7 @@ class StressCycle:
     stress: Array
     shear_modulus: float
     poisson_ratio: float
+    units: tuple[str, str] = ("", "")
 
     def __post_init__(self) -> None:
         for name in ("x", "y", "stress"):
@@ -73,7 +75,7 @@ class StressCycle:
         every = tuple(range(share.ndim))
         averaged = np.tensordot(self.stress, share, axes=([axis + 1 for axis in every], every))
         x, y = (np.asarray(np.sum(share * values)) for values in (self.x, self.y))
-        return StressCycle(x, y, averaged, self.shear_modulus, self.poisson_ratio)
+        return dataclasses.replace(self, x=x, y=y, stress=averaged)
 
 
 def stress_cycle(
@@ -93,7 +95,8 @@ def stress_cycle(
     result = kept_states(result)
     fields = [stress(result, across, up, body=body, step=number) for number in numbers]
     components = [np.stack([field[name].reshape(across.shape) for name in COMPONENTS], axis=-1) for field in fields]
-    return StressCycle(across, up, np.stack(components), shear_modulus, poisson_ratio)
+    units = result.mesh.unit("x"), result.state.unit("pressure")
+    return StressCycle(across, up, np.stack(components), shear_modulus, poisson_ratio, units)
 
 
 def warn_of_doubt(result: Result, *names: str) -> None:
