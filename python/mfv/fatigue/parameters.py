@@ -212,8 +212,8 @@ def _critical_plane(name: str, cycle: StressCycle, value: Callable[[Array, Array
     is_outside = np.isnan(cycle.stress).any(axis=(0, -1))
     is_tilted = tilted[0] * (1.0 - MARGIN * np.sign(tilted[0])) > best  # also where both are -inf outside
     best, angle, tilt = (np.where(is_tilted, *both) for both in zip(tilted, (best, angle, tilt)))
-    found = (np.where(is_outside, np.nan, one) for one in (best, *in_range(angle, tilt)))
-    return ParameterMap(name, cycle.x, cycle.y, *found, units=units)
+    best, angle, tilt = (np.where(is_outside, np.nan, one) for one in (best, *in_range(angle, tilt)))
+    return ParameterMap(name, cycle.x, cycle.y, best, angle, tilt, units)
 
 
 def _largest(at: Callable[[Array, Array], Array], shape: tuple[int, ...], angles: int, tilts: int) -> tuple[Array, Array, Array]:

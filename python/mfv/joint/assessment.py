@@ -57,7 +57,7 @@ def assess(model: Model, measured: Measurement) -> Assessment:
             np.max(np.abs(forces - expected)) / amplitude,
         )
         rows.append((cycle.amplitude, amplitude, cycle.dissipation, cycle.stiffness, *errors))
-    return Assessment(*np.array(rows).T, warnings=measured.warnings)
+    return Assessment(*np.array(rows).T)._replace(warnings=measured.warnings)
 
 
 def _path(cycle: Cycle) -> tuple[Array, Array]:
