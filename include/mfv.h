@@ -4,7 +4,8 @@
  * by step; then read its fields by their paths in the result file (docs/file-format.md), such as "state/pressure". Scales, which the
  * file repeats in every group, are only available as "mesh/x", "history/record", "cycles/cycle" and "patches/patch".
  *
- * Units: any consistent set; forces and energies per unit thickness. Every call returns a status; mfv_message explains it.
+ * Units: any consistent set; forces and energies per unit thickness. Every call returns a status; mfv_message explains that of a
+ * case, mfv_create what is wrong with a scene. Warnings are the attribute "warnings" of a case (mfv_attribute).
  * The library never prints and never stops the process. Handles are independent of each other. Only one call at a time can use a
  * handle: others return MFV_IN_USE and do nothing (mfv_write in two threads at once needs a thread-safe HDF5, as Debian's is).
  * A handle that is null, freed, of another kind or invalid always gives MFV_BAD_HANDLE: handles are not addresses and are never
@@ -245,9 +246,9 @@ enum { MFV_ALONG_NOTHING = 0, MFV_ALONG_NODES = 1, MFV_ALONG_RECORDS = 2, MFV_AL
 int mfv_field_info(const mfv_case *handle, const char *path, size_t *count, int *is_integer, int *along,
                    char *unit, size_t unit_size, char *description, size_t description_size);
 
-/* Attributes of the result, texts such as title, outcome, plane or input: name of attribute `index` (from 0;
- * MFV_BAD_ARGUMENT beyond the last), and text of a named one. `length`: its characters, without the terminating null.
- * `buffer` and `length` may be NULL. Since 0.1.0. */
+/* Attributes of the result, texts such as title, outcome, plane, input, warnings (a line each) and unresolved (names of observables
+ * that the mesh does not resolve): name of attribute `index` (from 0; MFV_BAD_ARGUMENT beyond the last), and text of a named one.
+ * `length`: its characters, without the terminating null. `buffer` and `length` may be NULL. Since 0.1.0. */
 int mfv_attribute_name(const mfv_case *handle, size_t index, char *buffer, size_t size);
 int mfv_attribute(const mfv_case *handle, const char *name, char *buffer, size_t size, size_t *length);
 

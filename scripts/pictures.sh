@@ -67,9 +67,9 @@ from mfv import fatigue
 
 result = mfv.run(sys.argv[1])
 cycle = fatigue.stress_cycle(result, *fatigue.graded_points(result, depth=0.6))
-figure, axes = plt.subplots(1, 2, figsize=(9.5, 2.2), layout="constrained")
+figure, axes = plt.subplots(1, 2, figsize=(10.5, 2.2), layout="constrained")
 for parameter, unit, ax in zip((fatigue.smith_watson_topper(cycle), fatigue.fatemi_socie(cycle, yield_strength=325)), ("MPa", "1"), axes):
-    mfv.plot.parameter_contours(parameter, ax, colour_bar=True, units=("mm", unit)).set_xlim(-2.6, -0.2)
+    mfv.plot.parameter_contours(parameter, ax, units=("mm", unit)).set_xlim(-2.6, -0.2)
 figure.savefig(f"{sys.argv[2]}/fatigue_maps.png", dpi=120)
 END
 PYTHONPATH=$root/python MPLBACKEND=Agg MFV_LIBRARY=$library/libmfv.so "$venv/bin/python" "$root/examples/wear.py" "$pictures/wear.png" "$pictures/wear.gif"

@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _html
 from .inputs import keys
-from .result import Group, Result
+from .result import Group, Result, doubt
 from .stress import drawn_at
 
 #: Groups of numbers that are compared.
@@ -110,6 +110,7 @@ class Comparison:
             f"  {number.name:26}{_figure(number.first):>14} {_figure(number.second):>14}   "
             f"{_figure(number.relative_difference, 3):<10}"
             f"{_html.unit(number.unit)}".rstrip()
+            + (doubt(self.first, number.name) or doubt(self.second, number.name))
             for number in numbers
         ]
 

@@ -21,8 +21,8 @@ from . import drawing, patches_figure
 from . import edges_figure as edges_picture
 from .codes import EventKind, NodeStatus
 from .errors import MfvError
-from .result import Group, Result, is_last
-from .stress import NAMES, Largest, StressField, contact_edges, drawn_at, grid, is_radial, stored, stress, surface_at
+from .result import Group, Result, doubt, is_last
+from .stress import NAMES, Largest, StressField, contact_edges, drawn_at, grid, is_radial, radius_of, stored, stress, surface_at
 from .views import (
     contact,
     friction_limits,
@@ -165,8 +165,9 @@ def _cycle_caption(result: Result) -> str:
     seen, unit = result.observables, result.observables.unit("cycle_dissipation")
     parts = [
         f"{result.cycles.cycle.size} cycles",
-        f"the last cycle dissipates {seen.cycle_dissipation:.4g}{f' {unit}' if is_named(unit) else ''}",
-        f"loss factor {seen.loss_factor:.3g}" if "loss_factor" in seen else "",
+        f"the last cycle dissipates {seen.cycle_dissipation:.4g}{f' {unit}' if is_named(unit) else ''}"
+        + doubt(result, "cycle_dissipation"),
+        f"loss factor {seen.loss_factor:.3g}{doubt(result, 'loss_factor')}" if "loss_factor" in seen else "",
         f"change of the tractions over it {seen.cycle_change:.1e}",
     ]
     return " \N{MIDDLE DOT} ".join(part for part in parts if part)
@@ -207,15 +208,16 @@ def _scales(result: Result, field: StressField) -> str:
     """The scales of the picture, the largest von Mises stress and the largest tension, in the user's units."""
     unit, length = _unit(result.state.unit("pressure")), _unit(result.mesh.unit("x"))
     parts = [
-        f"$p_0$ = {field.largest_pressure:.4g}{unit}",
-        f"$a$ = {field.half_width:.4g}{length}",
-        f"largest von Mises stress {field.largest.value:.4g}{unit}"
+        f"$p_0$ = {field.largest_pressure:.4g}{unit}{doubt(result, 'peak_pressure')}",
+        f"$a$ = {field.half_width:.4g}{length}{doubt(result, 'contact_half_width')}",
+        f"largest von Mises stress {field.largest.value:.4g}{unit}{doubt(result, 'peak_pressure', f'largest_{field.body}_von_mises')}"
         if np.isfinite(field.largest.value)
         else "von Mises stress unbounded at a sharp corner",
     ]
     if field.tension.value > 0.0:
         parts[-1] += (
             f"\nlargest tension along the surface {field.tension.value:.4g}{unit} at $x$ = {_signed(field.tension.x)}{length}"
+            + doubt(result, f"{field.body}_tension")
         )
     return " \N{MIDDLE DOT} ".join(parts)
 
@@ -277,11 +279,15 @@ def stress_contours(
 
 
 def parameter_contours(
-    field: ParameterMap, ax: Axes | None = None, *, colour_bar: bool = False, units: tuple[str, str] = ("", "")
+    field: ParameterMap, ax: Axes | None = None, *, colour_bar: bool = True, units: tuple[str, str] | None = None
 ) -> Axes:
     """Contours of a fatigue parameter on a grid, in the units of the case, with its maximum marked and there a line along the critical
-    plane. `colour_bar`: with a scale beside them. `units`: names of those of length and of the parameter, for the labels."""
-    ax = _axes(ax)
+    plane. `colour_bar`: with a scale beside them. `units`: names of those of length and of the parameter in place of the field's own."""
+    if ax is None:
+        size = 7.0, 1.2 + 5.5 * min(float(np.ptp(field.y) / np.ptp(field.x)), 1.0)
+        with matplotlib.rc_context(drawing.STYLE):
+            return parameter_contours(field, _axes(None, size), colour_bar=colour_bar, units=units)
+    units = units or field.units
     values = np.ma.masked_invalid(field.values)
     levels = MaxNLocator(15).tick_values(0.0, float(values.max()))
     contours = ax.contourf(field.x, field.y, values, levels=levels, cmap="viridis")
@@ -299,7 +305,8 @@ def parameter_contours(
     ax.set_xlabel(drawing.label("", "x", units[0]).strip())
     ax.set_ylabel(drawing.label("", "y", units[0]).strip())
     if colour_bar:
-        ax.figure.colorbar(contours, cax=ax.inset_axes((1.02, 0.0, 0.025, 1.0)), ticks=levels[::4])
+        bar = ax.figure.colorbar(contours, cax=ax.inset_axes((1.02, 0.0, 0.025, 1.0)), ticks=levels[::4])
+        bar.set_label(_unit(units[1]).strip())
     return ax
 
 
@@ -501,7 +508,7 @@ def surface_stress(result: Result, ax: Axes | None = None, step: int | None = No
     body, chosen = _stressed_body(result), step or len(result.steps)
     turns = list(_named_records(result, result.history.tangential_force, step).values()) if result.cycles and step is None else []
     shown = [number for number in turns if number < chosen and result.steps[number - 1].step == result.cycles.step[-1]]
-    name = "sigma_xx" if result.scene.get(f"{body}_radius") is None else "sigma_thetatheta"
+    name = "sigma_xx" if radius_of(result, body) is None else "sigma_thetatheta"
     for number, style in zip([*shown, step], [*((0, (k + 1, 1.5)) for k in range(len(shown))), "-"]):
         x = _surface_points(result, body, number)
         field = stress(result, *surface_at(result, body, x), body=body, step=number)
@@ -509,7 +516,7 @@ def surface_stress(result: Result, ax: Axes | None = None, step: int | None = No
         label = f"{'state ' if number else 'last state'}{number or ''}"
         ax.plot(x, field[name], color=color, linewidth=1.0, linestyle=style, label=f"{body} body, {label}")
         if number == step and np.isfinite(field.tension.x) and field.tension.value > 0.0:
-            _mark_tension(ax, field.tension, result)
+            _mark_tension(ax, field.tension, result, doubt(result, f"{body}_tension"))
     ax.set_ylabel(
         drawing.label(
             "stress along the surface", r"\sigma_{xx}" if name == "sigma_xx" else r"\sigma", result.state.unit("pressure")
@@ -519,8 +526,8 @@ def surface_stress(result: Result, ax: Axes | None = None, step: int | None = No
     return ax
 
 
-def _mark_tension(ax: Axes, peak: Largest, result: Result) -> None:
-    """Mark the largest tension with its value and place."""
+def _mark_tension(ax: Axes, peak: Largest, result: Result, note: str) -> None:
+    """Mark the largest tension with its value, a `note` and its place."""
     units = _unit(result.state.unit("pressure")), _unit(result.mesh.unit("x"))
     left, right = contact(result, [result.state])
     place = peak.x
@@ -528,7 +535,7 @@ def _mark_tension(ax: Axes, peak: Largest, result: Result) -> None:
         place = float(np.degrees(2.0 * np.arctan2(np.sign(peak.x) * abs(peak.y), abs(peak.x)))) if peak.x else 0.0
     beside = place < 0.5 * (left + right)
     ax.plot(place, peak.value, "o", color=drawing.MARKS, markersize=5, markerfacecolor="none", clip_on=False)
-    text = f"{peak.value:.4g}{units[0]}\nat $x$ = {_signed(peak.x)}{units[1]}"
+    text = f"{peak.value:.4g}{units[0]}{note}\nat $x$ = {_signed(peak.x)}{units[1]}"
     ax.annotate(text, (place, peak.value), xytext=(10 if beside else -10, -2), textcoords="offset points",
                 ha="left" if beside else "right", va="top", fontsize=9)  # fmt: skip
 
@@ -579,14 +586,14 @@ def _finished_curve(
     return ax
 
 
-def _axes(ax: Axes | None) -> Axes:
-    """The given axes, or those of a new figure of pyplot."""
+def _axes(ax: Axes | None, size: tuple[float, float] = (drawing.PANEL_WIDTH, drawing.PANEL_HEIGHT)) -> Axes:
+    """The given axes, or those of a new figure of pyplot of a size in inch."""
     if ax is not None:
         return ax
     from matplotlib import pyplot  # here, since it needs a display
 
     with matplotlib.rc_context(drawing.STYLE):
-        _, made = pyplot.subplots(figsize=(drawing.PANEL_WIDTH, drawing.PANEL_HEIGHT), layout="constrained")
+        _, made = pyplot.subplots(figsize=size, layout="constrained")
     return made
 
 

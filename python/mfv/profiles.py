@@ -29,7 +29,7 @@ class Reading(TypedDict, total=False):
 
     unit: str
     file_unit: str | None
-    outwards: bool
+    outwards: bool | None
     spacing: float | None
     line: int | Literal["middle", "mean"] | None
     along: Literal["x", "y"] | None
@@ -52,7 +52,7 @@ def read(
     *,
     unit: str = "mm",
     file_unit: str | None = None,
-    outwards: bool = True,
+    outwards: bool | None = None,
     spacing: float | None = None,
     line: int | Literal["middle", "mean"] | None = None,
     along: Literal["x", "y"] | None = None,
@@ -64,7 +64,8 @@ def read(
 
     `unit`: of the positions and heights that are returned, and of `spacing`, `lambda_s` and `lambda_c`. `file_unit`: that of a file
     which names none; if omitted: `unit`, with a note. `outwards`: whether heights of the file are positive out of the material, as
-    those of instruments are; they are returned as the recess, with the other sign. `spacing`: of heights without positions. Areal
+    those of instruments are; they are returned as the recess, with the other sign. If omitted: unless the heading of a text says that
+    they are the recess, as that of `mfv profile` does. `spacing`: of heights without positions. Areal
     maps: `along` x (if omitted) or y, `line` counts lines from 1 across it; 'mean': the mean of all lines; if omitted: 'middle'.
     `channel`: number from 1 or name; if omitted: the default of the format. Gaussian filters of ISO 16610-21: waves shorter than
     `lambda_s` and longer than `lambda_c` are removed (half of the amplitude at that wavelength); positions that are not at equal
@@ -85,17 +86,23 @@ def read(
         raise input_error(f"lambda_s={lambda_s}: must be below lambda_c={lambda_c}, or no wave is left")
     try:
         tables.check_text(path)
-        x, height, x_unit, height_unit = tables.read_trace(path, heights_alone=spacing is not None)
+        x, height, x_unit, height_unit, is_recess = tables.read_trace(path, heights_alone=spacing is not None)
     except tables.Ambiguous as fault:
         raise input_error(f"{fault}; or give spacing in {unit} for heights") from None
     except tables.Unordered as fault:
         raise input_error(str(fault)) from None
     except MfvError as fault:
         x, height, x_unit = _of_instrument(path, fault, line, along, channel, notes)
-        height_unit = x_unit
+        height_unit, is_recess = x_unit, False
     else:
         _refuse(name, "a text with one profile", line=line, along=along, channel=channel)
     x_scale, height_scale = _scales(name, unit, file_unit, x_unit, height_unit, notes)
+    if outwards is None:
+        outwards = not is_recess
+        if outwards and not (x_unit or height_unit or file_unit):
+            notes.append(
+                f"{name}: heights are taken as positive out of the material; outwards=False (--inwards) if they are the recess"
+            )
     height = height_scale * height
     if x is None and spacing is None:
         raise input_error(f"{name}: has no distances between its heights; give spacing in {unit}")

@@ -25,7 +25,7 @@ from plotly.offline import get_plotlyjs
 from . import __version__, _html
 from .codes import NodeStatus
 from .load_history import LoadHistory, evenly, kept_states, thinned
-from .result import Group, Result, counts, is_last
+from .result import Group, Result, counts, doubt, is_last
 from .stress import drawn_at
 from .views import (
     LOADS,
@@ -378,7 +378,7 @@ def _key_numbers(result: Result) -> list[dict[str, str]]:
                 {
                     "name": shown,
                     "value": _with_unit(group, name),
-                    "bar": "" if bar is None or not math.isfinite(bar) else f"± {bar:.2g}",
+                    "bar": doubt(result, name).strip() if bar is None or not math.isfinite(bar) else f"± {bar:.2g}",
                     "meaning": group.description(name),
                 }
             )
@@ -390,7 +390,9 @@ def _tables(result: Result) -> dict[str, list[tuple[str, str, str, str]]]:
     groups = (("certificate", result.certificate), ("summary", result.summary), ("observables", result.observables))
     return {
         name: [
-            (key, _number(group[key]), _unit(group.unit(key)), group.description(key)) for key in group if np.ndim(group[key]) == 0
+            (key, _number(group[key]), _unit(group.unit(key)), group.description(key) + doubt(result, key))
+            for key in group
+            if np.ndim(group[key]) == 0
         ]
         for name, group in groups
         if group

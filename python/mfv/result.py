@@ -42,6 +42,14 @@ COORDINATES = {
 NUMBERS = ("summary", "certificate", "sensitivity", "observables", "scene")
 LISTS = ("history", "cycles", "patches")
 
+#: Observables whose error bars are those of numbers of the summary that have none of their own (docs/theory.md).
+BARS = {
+    "contact_left": "contact_length",
+    "contact_right": "contact_length",
+    "stick_left": "left_slip_zone",
+    "stick_right": "right_slip_zone",
+}
+
 #: The group of the stresses of mfv_stress.
 STRESS = "stress/"
 
@@ -218,10 +226,22 @@ class Result:
 
     def error_bar(self, name: str) -> float:
         """Estimated discretisation error of an observable, in its unit: NaN where it is not resolved, infinite where it has no limit.
-        Raises ValueError for a result without error bars, with the reason; KeyError for counts and others that have none."""
+        Raises ValueError for a result without error bars, with the reason; KeyError for counts and others that have none, with the
+        observable whose bar counts."""
         if not self.error_estimate:
             reason = self.attributes.get("error_estimate", "run with error_estimate=True in Output, or mfv run --estimate")
             raise ValueError(f"no error bars: {reason.removeprefix('none: ')}")
+        bars = [bar.removesuffix("_error") for bar in self.error_estimate if bar.endswith("_error")]
+        if name not in bars:
+            other = BARS.get(name)
+            rule = (
+                f"take that of {other}" if other in bars else "counts, prescribed loads and numbers derived from others have none"
+            )
+            is_known = name in self.summary or name in self.observables
+            raise NoQuantity(
+                None,
+                f"'{name}' has no error bar of its own: {rule}" if is_known else f"no observable '{name}'{suggestion(name, bars)}",
+            )
         return float(self.error_estimate[f"{name}_error"])
 
     def at(self, step: int | None = None) -> Group:
@@ -285,6 +305,11 @@ def counts(loads: Group) -> str:
     if loads.stick_nodes + loads.slip_nodes > 0:
         text += f" ({loads.stick_nodes} stuck, {loads.slip_nodes} slipping)"
     return text
+
+
+def doubt(result: Result, *names: str) -> str:
+    """What follows a number if the mesh does not resolve one of these observables, by which it is known."""
+    return " (not resolved)" if set(names) & set(result.unresolved) else ""
 
 
 def is_last(result: Result, state: Group) -> bool:

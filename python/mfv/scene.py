@@ -296,8 +296,8 @@ class Body(KeyGroup):
         whose height is NaN are omitted. A negative `height_scale` is for heights that are positive outwards.
 
         Or the profile in a file, a text or that of an instrument: `Body.profile("scan.opd", unit="mm")`, with the options of
-        `mfv.profiles.read`; heights are positive outwards then. Its notes are warnings of Python. Raises OSError, InputError,
-        ModuleNotFoundError.
+        `mfv.profiles.read`; its heights are positive outwards, unless its heading says recess or with `outwards=False`. Its notes are
+        warnings of Python. Raises OSError, InputError, ModuleNotFoundError.
         """
         keys: dict[str, Any] = dict(others)
         if not isinstance(x, (str, os.PathLike)):
@@ -308,7 +308,12 @@ class Body(KeyGroup):
             raise TypeError("Body.profile takes the name of a file, or x and height, not both")
         from . import profiles
 
-        options = {name: keys.pop(name) for name in profiles.Reading.__annotations__ if name in keys}
+        known = profiles.Reading.__annotations__
+        for name in keys:
+            if name not in known and cls._unknown(name):
+                hint = "; did you mean outwards=False?" if name == "inwards" else suggestion(name, [*known, *cls.key_names()])
+                raise TypeError(f"Body.profile has no '{name}'{hint}")
+        options = {name: keys.pop(name) for name in known if name in keys}
         return cls(shape="profile", data=_measured(x, **options), **keys)
 
     @classmethod

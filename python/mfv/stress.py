@@ -161,9 +161,18 @@ def stored(result: Result, *, body: str = "lower", step: int | None = None) -> S
     )
 
 
+def radius_of(result: Result, body: str) -> float | None:
+    """Radius of the surface of a body that deforms as a disk or hole [length]; None for others, also disks and holes that deform as
+    half-planes: with layers, or by their `elasticity`."""
+    given = keys(result.attributes["input"]).get(f"body({BODIES.index(body) + 1})%elasticity", "own")
+    is_half_plane = f"{body}_layers" in result.scene or str(given).lower() != "own"
+    return None if is_half_plane else result.scene.get(f"{body}_radius")
+
+
 def surface(result: Result, body: str, x: Array) -> Array:
-    """Height of the undeformed surface of the lower body at x; of the upper one upside down. NaN beside a disk or hole."""
-    radius = result.scene.get(f"{body}_radius")
+    """Height of the undeformed surface of the lower body at x; of the upper one upside down. NaN beside a disk or hole; 0 for all that
+    deforms as a half-plane."""
+    radius = radius_of(result, body)
     if radius is None:
         return np.zeros_like(x)
     sign = -1.0 if result.attributes[f"{body}_body"].endswith("disk") else 1.0
@@ -173,7 +182,7 @@ def surface(result: Result, body: str, x: Array) -> Array:
 
 def slope(result: Result, body: str, x: ArrayLike) -> Array:
     """Angle of the undeformed surface of a body at x from the x axis, counterclockwise, in radians; NaN beside a disk or hole."""
-    radius = result.scene.get(f"{body}_radius")
+    radius = radius_of(result, body)
     if radius is None:
         return np.zeros_like(x, dtype=np.float64)
     with np.errstate(invalid="ignore"):
@@ -200,7 +209,7 @@ def contact_edges(result: Result, body: str, step: int | None = None) -> Array:
 
 def _surface_at(result: Result, body: str, arc: Array) -> tuple[Array, Array, Array]:
     """Positions x, y of points along the undeformed surface of a body, and its slope there."""
-    radius = result.scene.get(f"{body}_radius")
+    radius = radius_of(result, body)
     if radius is None:
         return arc, np.zeros_like(arc), np.zeros_like(arc)
     angle = arc / (_radius_of_nodes(result) if is_radial(result) else radius)

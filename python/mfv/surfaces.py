@@ -17,7 +17,7 @@ from ._packages import needed
 from .codes import NodeStatus
 from .errors import input_error
 from .profiles import Profile
-from .result import Group, Result
+from .result import Group, Result, doubt
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,6 +52,12 @@ class RoughContact:
     mean_pressure: Array
     largest_pressure: Array
     dissipation: Array
+    #: Those of the columns that the mesh does not resolve, as known of the last state.
+    unresolved: tuple[str, ...] = ()
+
+
+#: Observables by which columns of RoughContact are known, if they have other names.
+OBSERVABLES = {"stick_fraction": "stick_ratio", "mean_pressure": "contact_length", "largest_pressure": "peak_pressure"}
 
 
 def self_affine(
@@ -144,6 +150,7 @@ def contact(result: Result) -> RoughContact:
         mean_pressure=mean,
         largest_pressure=np.array([float(np.max(state.pressure)) for state in states]),
         dissipation=np.array([float(state.dissipation) for state in states]),
+        unresolved=tuple(name for name in RoughContact.__annotations__ if doubt(result, OBSERVABLES.get(name, name))),
     )
 
 
@@ -192,6 +199,8 @@ def figure(result: Result, step: int | None = None) -> Figure:
         _growth(result, axes[1, 0])
         _distributions(result, state, axes[1, 1:])
         picture.suptitle(drawing.heading(result, step), fontsize=12, parse_math=False)
+        if unresolved := contact(result).unresolved:
+            picture.supxlabel(f"not resolved: {', '.join(unresolved)}", fontsize=9, color="0.35")
     return picture
 
 

@@ -46,7 +46,7 @@ _CLOCK = re.compile(r"(?:(\S+?)(?:T|\s+))?(?:(\d+):)?(\d+):(\d+(?:[.,]\d*)?)(?:\
 _DATES = ("%Y-%m-%d", "%Y/%m/%d", "%d.%m.%Y")
 _DAY = 86400.0
 #: Names of a column of heights, in lower case.
-_HEIGHTS = ("z", "h", "height", "heights", "depth", "profile")
+_HEIGHTS = ("z", "h", "height", "heights", "depth", "profile", "recess")
 #: Lines among which columns and decimal marks are recognised.
 _SAMPLE = 1000
 #: Bytes by which a file is recognised as a text.
@@ -261,12 +261,14 @@ def _row(line: str, columns: int, decimal_comma: bool) -> list[float] | None:
 
 
 class Trace(NamedTuple):
-    """Heights, with NaN where there is no value, at increasing positions or, if these are None, at equal distances; units or ''."""
+    """Heights, with NaN where there is no value, at increasing positions or, if these are None, at equal distances; units or ''; whether
+    the heading says that heights are the recess."""
 
     x: Array | None
     height: Array
     x_unit: str
     height_unit: str
+    is_recess: bool
 
 
 class Ambiguous(MfvError):
@@ -314,11 +316,16 @@ def read_trace(path: str | os.PathLike[str], heights_alone: bool = False) -> Tra
         )
     units = _units_of_trace(lines[: start - 1], columns)
     if table.shape[1] == 1:
-        return Trace(None, table[:, 0], "", units[-1])
+        return Trace(None, table[:, 0], "", units[-1], _names_recess(lines[: start - 1]))
     x = table[:, 0][np.isfinite(table[:, 0])]
     if x.size > 1 and x[0] > x[-1]:
         table = table[::-1]
-    return Trace(table[:, 0].copy(), table[:, 1].copy(), units[0], units[1])
+    return Trace(table[:, 0].copy(), table[:, 1].copy(), units[0], units[1], _names_recess(lines[: start - 1]))
+
+
+def _names_recess(head: Sequence[str]) -> bool:
+    """Whether the lines before the numbers say that heights are the recess, as those of `mfv profile` do."""
+    return any(re.search(r"\b(recess|recedes)\b", line, re.IGNORECASE) for line in head)
 
 
 def _named(head: Sequence[str]) -> int:

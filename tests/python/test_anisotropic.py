@@ -381,3 +381,19 @@ def test_an_incompressible_material_does_not_couple() -> None:
     result = Scene(plane, Body.disk(1.0, rigid=True), steps=[Step(normal_force=0.01)], mesh=Mesh(nodes=21)).run(check=True)
     assert abs(result.scene.dundurs_beta) < 1e-14
     assert 1 / result.scene.contact_modulus == pytest.approx(1.5, rel=1e-12)
+
+
+def test_constants_of_a_cubic_crystal() -> None:
+    """Silicon by the formulas of the guide (C11, C12, C44), at an angle: the compliances are those of the inverse of its stiffness matrix
+    in plane strain."""
+    c11, c12, c44 = 165700.0, 63900.0, 79600.0
+    modulus, ratio = (c11 - c12) * (c11 + 2.0 * c12) / (c11 + c12), c12 / (c11 + c12)
+    assert modulus == pytest.approx(130000.0, rel=2e-3) and ratio == pytest.approx(0.278, abs=5e-4)
+    keys = {f"youngs_modulus_{axis}": modulus for axis in (1, 2, 3)} | {f"poisson_ratio_{pair}": ratio for pair in (12, 13, 23)}
+    body = Body.half_plane(elasticity="orthotropic", axis_angle=20.0, shear_modulus_12=c44, **keys)
+    found = Scene(body, Body.disk(10.0, rigid=True), steps=[Step(normal_force=1.0)], mesh=Mesh(nodes=21)).run(check=True).scene
+    in_plane = np.linalg.inv([[c11, c12, 0.0], [c12, c11, 0.0], [0.0, 0.0, c44]])  # plane strain: the third strain vanishes
+    expected = turned(in_plane, 20.0)
+    for row, column in ((1, 1), (1, 2), (2, 2), (1, 6), (2, 6), (6, 6)):
+        value = expected[min(row, 3) - 1, min(column, 3) - 1]
+        assert found[f"lower_compliance_{row}{column}"] == pytest.approx(value, rel=1e-9, abs=1e-9 * in_plane[0, 0])

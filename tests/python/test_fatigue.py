@@ -625,6 +625,13 @@ def test_upper_body_is_the_mirror_image() -> None:
     np.testing.assert_allclose(upper[:, ::-1, 0], lower[..., 0], rtol=1e-6)
 
 
+def test_units_of_parameters(pad: mfv.Result) -> None:
+    """Those of the case; strains have none; averages keep them."""
+    cycle = fatigue.averaged_cycle(pad, 1.0, 0.1, method="point")
+    assert cycle.units == fatigue.smith_watson_topper(cycle).units == fatigue.crossland(cycle, k=0.3).units == ("mm", "N/mm^2")
+    assert fatigue.fatemi_socie(cycle, yield_strength=300.0).units == ("mm", "1")
+
+
 def test_averages(pad: mfv.Result) -> None:
     """Averages over vanishing distances are the value at the hot spot; the line is the integral of stresses at its points."""
     tension = mfv.stress.stress(pad, 0.0, 0.0).tension
@@ -656,6 +663,8 @@ def test_ruiz(pad: mfv.Result) -> None:
     inner = np.abs(found.x) < 0.4
     assert np.all(pad.state.status[inner] == mfv.NodeStatus.STICK)
     assert np.max(found.first[inner]) < 1e-9 * np.max(found.first)
+    assert found.slip.max() == pytest.approx(float(pad.observables.largest_slip_range), rel=1e-12)
+    assert found.units == ("N/mm", "N^2/mm^3")
     place = int(np.argmax(found.second))
     assert found.x[place] < -0.9 * 1.39 and found.shear[place] == pytest.approx(0.65 * last.pressure[place], rel=1e-9)
     assert found.slip[place] == pytest.approx(abs(pad.steps[5].slip[place] - pad.steps[4].slip[place]), rel=1e-12)
@@ -768,6 +777,12 @@ def test_picture_of_a_map(side: float) -> None:
     tilted = fatigue.ParameterMap("Findley", x, y, values, angle, np.full(x.shape, np.radians(20.0)))
     ax = mfv.plot.parameter_contours(tilted, pyplot.figure().subplots())
     assert ax.get_title().endswith("30\N{DEGREE SIGN}, tilted 20\N{DEGREE SIGN} out of the plane")
+    named = fatigue.ParameterMap("Findley", x, y, values, angle, units=("mm", "N/mm^2"))
+    for given, label in ((None, "N/mm$^2$"), (("mm", "MPa"), "MPa")):
+        ax = mfv.plot.parameter_contours(named, units=given)
+        assert ax.get_xlabel() == "$x$ [mm]" and f"2.5 {label} at" in ax.get_title()
+        assert [bar.get_ylabel() for bar in ax.child_axes] == [label]
+    assert not mfv.plot.parameter_contours(named, colour_bar=False).child_axes
     pyplot.close("all")
 
 
@@ -780,3 +795,106 @@ def test_points_are_dense_at_the_edges_of_a_curved_contact() -> None:
     for edge in (left, right):
         assert np.sum(np.abs(x[0] - edge) < 1.0e-3 * half) > 5
     assert abs(np.nanmin(result.state.contact_edge) - left) > 0.02 * half
+
+
+HARD, SOFT = (mfv.Layer(thickness=t, youngs_modulus=e, poisson_ratio=nu) for t, e, nu in ((0.02, 3e5, 0.2), (0.03, 2e4, 0.4)))
+
+
+def coated(*layers: mfv.Layer, above: bool = False) -> mfv.Result:
+    """A coated body below a rigid cylinder, or a coated cylinder above a rigid half-plane, under a cycle of shear and bulk stress."""
+    body = mfv.Body.disk(10.0, **ALUMINIUM) if above else mfv.Body.half_plane(**ALUMINIUM)
+    body.layers = list(layers)
+    other = mfv.Body(shape="half_plane", rigid=True) if above else mfv.Body.disk(10.0, rigid=True)
+    bulk = f"{'upper' if above else 'lower'}_bulk_stress"
+    steps = [
+        mfv.Step(normal_force=50.0),
+        mfv.Step(force_ratio=0.4, **{bulk: 20.0}),
+        mfv.Step(force_ratio=-0.4, **{bulk: -20.0}, cycles=2),
+    ]
+    return mfv.Scene(
+        *((other, body) if above else (body, other)), mesh=mfv.Mesh(nodes=61), friction=mfv.Friction.coulomb(0.5), steps=steps
+    ).run(check=True)
+
+
+@pytest.mark.parametrize("body", mfv.stress.BODIES)
+def test_strains_in_every_layer_are_those_of_its_material(body: str) -> None:
+    """Far from the contact all layers extend like the body under its bulk stress, in plane strain (1 - nu^2)/E times it."""
+    result = coated(HARD, SOFT, above=body == "upper")
+    into = -1.0 if body == "lower" else 1.0
+    strain = 20.0 * (1.0 - 0.33**2) / 70000.0
+    for depth, modulus in ((0.0, 3e5), (0.01, 3e5), (0.02, 3e5), (0.020001, 2e4), (0.05, 2e4), (0.051, 70000.0), (1.0, 70000.0)):
+        cycle = fatigue.stress_cycle(result, 5000.0, into * depth, body=body)
+        assert cycle.youngs_modulus == pytest.approx(modulus)
+        found = fatigue.parameters.normal_strain(cycle, cycle.stress[..., 0])
+        assert 0.5 * np.ptp(found) == pytest.approx(strain, rel=1e-3), depth
+
+
+def test_points_and_averages_in_several_materials_are_refused() -> None:
+    result = coated(HARD, SOFT)
+    with pytest.raises(
+        ValueError,
+        match="layer 1 of the lower body and layer 2 of the lower body and the lower body below its layers: .* 0.02, 0.05",
+    ):
+        fatigue.stress_cycle(result, *fatigue.graded_points(result))
+    with pytest.raises(ValueError, match="in layer 1 of the lower body and layer 2"):
+        fatigue.averaged_cycle(result, 0.1, 0.02, method="line")
+    with pytest.raises(ValueError, match="several|layer 1"):
+        fatigue.edge_crack(result, 0.1, [0.01, 0.1])
+    assert fatigue.averaged_cycle(result, 0.1, 0.2, method="point").youngs_modulus == pytest.approx(70000.0)
+    assert fatigue.ruiz(result).tension.max() > 0.0
+
+
+def test_a_coating_of_the_same_material_changes_no_parameter() -> None:
+    """Below the coating, and in it."""
+    plain, same = coated(), coated(mfv.Layer(thickness=0.05, **ALUMINIUM))
+    for depth in (0.0, 0.02, 0.2):
+        plain_value, value = (
+            fatigue.smith_watson_topper(fatigue.stress_cycle(one, 0.3, -depth)).maximum.value for one in (plain, same)
+        )
+        assert value == pytest.approx(plain_value, rel=1e-6)
+
+
+def test_lives_below_an_anisotropic_layer() -> None:
+    """The layer has none; the body below it has, also on a rigid one only the layers are a body."""
+    fibres = {"youngs_modulus_1": 1.4e5, "youngs_modulus_2": 1e4, "youngs_modulus_3": 1e4, "shear_modulus_12": 5e3}
+    layer = mfv.Layer(
+        thickness=0.05, elasticity="orthotropic", poisson_ratio_12=0.3, poisson_ratio_13=0.3, poisson_ratio_23=0.4, **fibres
+    )
+    result = coated(layer)
+    with pytest.raises(ValueError, match="layer 1 of the lower body is anisotropic"):
+        fatigue.stress_cycle(result, 0.3, 0.0)
+    assert fatigue.stress_cycle(result, 0.3, -0.1).youngs_modulus == pytest.approx(70000.0)
+
+
+def test_what_the_mesh_does_not_resolve_is_said() -> None:
+    scene = pad_scene()
+    scene.mesh = mfv.Mesh(nodes=11)
+    result = scene.run()
+    with pytest.warns(UserWarning, match="does not resolve peak_pressure, .*largest_lower_tension"):
+        fatigue.stress_cycle(result, 1.0, 0.0)
+    with pytest.warns(UserWarning, match="does not resolve .*lower_tension"):
+        fatigue.averaged_cycle(result, 1.0, 0.1)
+    with pytest.warns(UserWarning, match="does not resolve largest_slip_range"):
+        fatigue.ruiz(result)
+
+
+def test_a_resolved_mesh_has_no_warning(pad: mfv.Result, recwarn: pytest.WarningsRecorder) -> None:
+    fatigue.ruiz(pad)
+    fatigue.averaged_cycle(pad, 1.0, 0.1)
+    assert not recwarn.list
+
+
+def test_disks_that_deform_as_half_planes_are_flat_inside() -> None:
+    """Points on their surfaces, and stresses there, are those of the half-planes."""
+    disk = mfv.Body.disk(10.0, elasticity="half_plane", **ALUMINIUM)
+    flat = mfv.Body.power(0.05, 2.0, **ALUMINIUM)
+    cycles = []
+    for body in (disk, flat):
+        scene = mfv.Scene(
+            body, mfv.Body.disk(10.0, rigid=True), mesh=mfv.Mesh(nodes=61, half_width=0.4), friction=mfv.Friction.coulomb(0.5)
+        )
+        scene.steps = [mfv.Step(normal_force=50.0), mfv.Step(force_ratio=0.4), mfv.Step(force_ratio=-0.4, cycles=2)]
+        result = scene.run(check=True)
+        assert not np.any(fatigue.graded_points(result)[1][0])
+        cycles.append(fatigue.averaged_cycle(result, 0.2, 0.05, method="area").stress)
+    np.testing.assert_allclose(*cycles, rtol=1e-3, atol=0.1)

@@ -748,3 +748,27 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch
     assert main(["loads", "nodes.csv", "--column", "pressure"]) == 2 and "write KEY=NAME" in capsys.readouterr().err
     assert main(["loads", "nodes.csv", "--body", "upper", "-o", "b.txt"]) == 2
     assert "nodes.csv: the nodal forces pull at the upper body" in capsys.readouterr().err and not Path("b.txt").exists()
+
+
+def test_errors_and_notes_are_in_the_table(tmp_path: Path) -> None:
+    """As comments, with which a case reads it; a body whose surface is not named has no bulk stress, which a note says."""
+
+    def comments(loads: ContactLoads, **options: Any) -> list[str]:
+        loads.write(tmp_path / "loads.txt", **options)
+        return [line[2:] for line in (tmp_path / "loads.txt").read_text().splitlines() if line.startswith("# ")][1:]
+
+    pad = PROJECT / "examples/fe_pad/pad.frd"
+    both = from_fe(pad, "UPPER_SURFACE", opposite="LOWER_SURFACE", centre=0.0)
+    assert both.lower_bulk is not None and both.upper_bulk is not None and both.notes
+    bulks = {"lower_bulk_stress": both.lower_bulk, "upper_bulk_stress": both.upper_bulk}
+    assert comments(both) == [*(f"error of {name}: at most {bulk.error.max():.2g}" for name, bulk in bulks.items()), *both.notes]
+    alloy = {"youngs_modulus": 74000.0, "poisson_ratio": 0.33}
+    bodies = mfv.Body.half_plane(**alloy), mfv.Body.disk(75.0, elasticity="half_plane", **alloy)
+    history = mfv.History(file=tmp_path / "loads.txt")
+    read = mfv.Scene(*bodies, mesh=mfv.Mesh(nodes=51), friction=mfv.Friction.coulomb(0.75), history=history).run(check=True)
+    assert read.summary.lower_bulk_stress == pytest.approx(both.lower_bulk.stress[-1], rel=1e-9)
+    alone = from_fe(pad, "UPPER_SURFACE", centre=0.0)
+    assert not any("no bulk stress" in note for note in both.notes)
+    assert "no bulk stress of the lower body, so none acts on it; name its surface by opposite" in alone.notes[-1]
+    edge = from_fe(arrays(0.03125, 0.4))
+    assert comments(edge, edge="right")[0] == f"error of normal_intensity: at most {edge.right.K_N_error.max():.2g}"

@@ -546,6 +546,51 @@ void update(int which, double *sliders, double displacement, double *force, doub
     return update
 
 
+def steel(nodes: int) -> Scene:
+    """Two steel cylinders on equal intervals."""
+    body = Body.disk(100.0, youngs_modulus=210e3, poisson_ratio=0.3)
+    pressed = Step(normal_force=500.0, friction=False)
+    units = {"length_unit": "mm", "force_unit": "N"}
+    return Scene(body, body, friction=Friction.coulomb(0.3), mesh=Mesh(nodes=nodes), steps=[pressed], **units)
+
+
+def test_what_the_mesh_does_not_resolve_is_said(compiler: str, tmp_path: Path) -> None:
+    """By the measurement, cycle by cycle as a run of the cycle alone says, by its comparison with a model, and in C."""
+    ratios = (0.05, 0.1, 0.3, 0.9)
+    measured = joint.measure(steel(101), ratios)
+    named = [ratio for ratio in ratios if any(text.startswith(f"force ratio {ratio:g}: ") for text in measured.warnings)]
+    expected = []
+    for ratio in ratios:
+        alone = steel(101)
+        alone.steps += [mfv.Step(force_ratio=ratio), mfv.Step(force_ratio=-ratio, cycles=1)]
+        if "cycle_dissipation" in alone.run().unresolved:
+            expected.append(ratio)
+    assert named == expected and 0 < len(named) < len(ratios)
+    assert "cycle_dissipation" in measured.unresolved
+    element = joint.table(measured.backbone)
+    told = str(joint.assess(element, measured))
+    assert all(f"warning: {text}" in told for text in measured.warnings)
+    header = element.c_source("pad", measured)
+    assert f"amplitudes from {measured.cycles[0].amplitude:.4g} to {measured.cycles[-1].amplitude:.4g}" in header
+    assert "displacements [mm], forces [N/mm]; 101 nodes" in header and "/* warning: force ratio 0.05: " in header
+    (tmp_path / "pad.c").write_text(header)
+    subprocess.run(
+        [compiler, "-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wno-unused", "-Werror", "-c", "pad.c"], cwd=tmp_path, check=True
+    )
+
+
+def test_a_resolved_measurement_has_no_warning() -> None:
+    measured = joint.measure(steel(401), (0.5, 0.9))
+    assert measured.warnings == measured.unresolved == ()
+    assert "warning" not in str(joint.assess(joint.table(measured.backbone), measured))
+
+
+def test_warnings_of_patches_are_not_repeated_for_every_cycle() -> None:
+    """A contact whose patches are not resolved says so once."""
+    measured = joint.measure(steel(9), (0.2, 0.5, 0.9))
+    assert measured.warnings and not any(text.startswith("force ratio") for text in measured.warnings), measured.warnings
+
+
 def test_a_zero_increment_keeps_force_and_tangent(compiler: str, tmp_path: Path) -> None:
     """After loading and after unloading, whatever the rounding of u - (u - slip); in Python and in C."""
     random = np.random.default_rng(2)

@@ -256,7 +256,45 @@ def test_patches_that_the_mesh_misses(seed: int) -> None:
     bodies = {"lower": Body.half_plane(youngs_modulus=2e5, poisson_ratio=0.3), "upper": Body.profile(x, recess, rigid=True)}
     alone = mfv.run(Scene(**bodies, mesh=Mesh(nodes=101, half_width=abs(places[1]) + 0.4), steps=[Step(normal_force=2000.0)]))
     wide = mfv.run(Scene(**bodies, mesh=Mesh(nodes=401, half_width=2.0), steps=[Step(normal_force=2000.0)]))
-    missed = wide.observables.patches > alone.observables.patches or wide.observables.contact_length > 1.1 * alone.observables.contact_length
+    missed = (
+        wide.observables.patches > alone.observables.patches
+        or wide.observables.contact_length > 1.1 * alone.observables.contact_length
+    )
     assert missed == any("overlap beyond the mesh" in warning for warning in alone.warnings)
     assert missed == ("peak_pressure" in alone.unresolved)
     assert not any("overlap" in warning for warning in wide.warnings)
+
+
+def test_a_text_that_says_recess_is_not_turned(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What `mfv profile` writes, again through it, through Body.profile and through a case: the same surface."""
+    monkeypatch.chdir(tmp_path)
+    x = np.linspace(-0.1, 0.1, 41)
+    np.savetxt("measured.csv", np.column_stack([1e3 * x, -1e3 * x**2]), delimiter=";", header="x [um];z [um]", comments="")
+    for first, second in (("measured.csv", "once.txt"), ("once.txt", "twice.txt")):
+        assert main(["profile", first, "-o", second]) in (0, None)
+    assert Path("once.txt").read_text().splitlines()[1:] == Path("twice.txt").read_text().splitlines()[1:]
+    assert "taken as positive" not in capsys.readouterr().err
+    keys = {"level": "none", "rigid": True}
+    by_name = [scene(Body.profile(name, **keys)) for name in ("measured.csv", "once.txt", "twice.txt")]
+    as_key = scene(Body(shape="profile", file=str(tmp_path / "once.txt"), **keys))
+    by_array = scene(Body.profile(x, x**2, **keys))
+    pressures = [one.run(check=True).state.pressure for one in (*by_name, as_key, by_array)]
+    for pressure in pressures:
+        np.testing.assert_allclose(pressure, pressures[-1], rtol=1e-6, atol=1e-6 * pressures[-1].max())
+    # Older files of `mfv profile`, and others whose comment says it; an explicit sense counts.
+    Path("older.txt").write_text("# a.x3p; height: distance by which the surface recedes\nx [mm] height [mm]\n0 0\n1 2\n")
+    assert profiles.read("older.txt").height.tolist() == [0.0, 2.0]
+    assert profiles.read("older.txt", outwards=True).height.tolist() == [0.0, -2.0]
+
+
+def test_sense_of_heights_is_said_if_nothing_is_known(tmp_path: Path) -> None:
+    path = tmp_path / "numbers.txt"
+    path.write_text("0 0\n1 2\n2 3\n")
+    assert any("positive out of the material; outwards=False" in note for note in profiles.read(path).notes)
+    assert len(profiles.read(path, outwards=True).notes) == 1
+    with pytest.raises(TypeError, match="Body.profile has no 'inwards'; did you mean outwards=False"):
+        Body.profile(path, inwards=True)
+    with pytest.raises(TypeError, match="did you mean lambda_s"):
+        Body.profile(path, lamda_s=0.1)

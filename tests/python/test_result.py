@@ -21,6 +21,8 @@ from matplotlib.figure import Figure
 from scenes import PRESS, cylinder
 
 import mfv
+from mfv.commands.info import description
+from mfv.compare import compare
 
 TO_AND_FRO = (
     mfv.Step(normal_force=5.0e-4),
@@ -124,8 +126,30 @@ def test_a_result_says_how_certain_its_observables_are(cycled: mfv.Result) -> No
     bars = {name: few.error_bar(name) for name in few.observables if f"{name}_error" in few.error_estimate}
     assert {name for name, bar in bars.items() if np.isnan(bar)} <= set(few.unresolved)
     assert 0.0 < bars["contact_length"] < 0.3 * few.observables.contact_length
-    with pytest.raises(KeyError, match="stick_ratoi_error"):
+    with pytest.raises(KeyError, match="no observable 'stick_ratoi'; did you mean stick_ratio"):
         few.error_bar("stick_ratoi")
+    for name, words in (
+        ("stick_left", "no error bar of its own: take that of left_slip_zone"),
+        ("contact_right", "no error bar of its own: take that of contact_length"),
+        ("contact_nodes", "no error bar of its own: counts"),
+    ):
+        with pytest.raises(KeyError, match=words):
+            few.error_bar(name)
+
+
+def test_numbers_that_are_not_resolved_are_marked(cycled: mfv.Result) -> None:
+    """In one way, in what is printed and drawn; those that are resolved are not."""
+    few = cylinder(*TO_AND_FRO, mesh=mfv.Mesh(nodes=15)).run()
+    mark = "(not resolved)"
+    told = {line.split()[0]: line for line in description(few).splitlines() if line.startswith("  ")}
+    assert mark in told["cycle_dissipation"] and mark not in told["normal_force"]
+    assert {name for name, line in told.items() if mark in line} <= set(few.unresolved)
+    both = {line.split()[0]: line for line in compare(cycled, few).describe().splitlines() if line.startswith("  ")}
+    assert both["stick_ratio"].endswith(mark) and mark not in both["normal_force"]
+    (caption,) = (legend.get_title().get_text() for legend in mfv.plot.cycles_figure(few).legends)
+    assert f"dissipates {few.observables.cycle_dissipation:.4g} {mark}" in caption.replace("\n", " ")
+    for resolved in (description(cycled), *(legend.get_title().get_text() for legend in mfv.plot.cycles_figure(cycled).legends)):
+        assert (mark in resolved) == bool(cycled.unresolved)
 
 
 def test_stresses_of_a_file_run_along_depth_and_x(cycled: mfv.Result) -> None:

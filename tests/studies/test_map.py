@@ -285,6 +285,9 @@ def test_material_of_another_body_is_refused(pad):
     path.write_text(small.PAD.replace("74100", "200000"))
     with pytest.raises(InputError, match="the material is not that of the lower body"):
         regime_map(path, points=2, material=material)
+    path.write_text(small.PAD + "&layer body=1, thickness=0.02, youngs_modulus=3e5, poisson_ratio=0.2 /\n")
+    with pytest.raises(InputError, match="a lower body without layers"):
+        regime_map(path, points=2, material=material)
     path.write_text(small.PAD.replace("'mm'", "'m'"))
     with pytest.raises(InputError, match="in mm and N"):
         regime_map(path, points=2, material=material)

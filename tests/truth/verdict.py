@@ -89,6 +89,8 @@ FLAGS = [
 #: Positions have the bars of the length and, of stick zones, of the stick ratio times the length of the contact.
 _POSITION = r"contact_(left|right)"
 _STICK_POSITION = r"stick_(left|right|length)"
+#: What is not resolved if the forces of patches are not, which prescribe nothing.
+_FORCES = {"patches/normal_force": "approach", "patches/tangential_force": "shift"}
 #: Quantities that are equal to an observable of another name.
 EQUAL = {
     "stick_ratio_lowest": "smallest_stick_ratio",
@@ -276,6 +278,8 @@ def bar_of(base: mfv.Result, path: str, value: float) -> float:
     or why there is no bar at all."""
     name = path.split("/")[1]
     if str(base.attributes.get("error_estimate", "")).startswith("none"):
+        return math.inf
+    if path in _FORCES and _error_of(base, _FORCES[path]) == math.inf:
         return math.inf
     if path == "cycles/shift_drift":  # the difference of two shifts
         return 2.0 * _error_of(base, "shift")

@@ -10,7 +10,7 @@ import numpy as np
 
 from .._html import unit
 from .._packages import require
-from ..result import COORDINATES, LISTS, Group, Result, kept, read
+from ..result import COORDINATES, LISTS, Group, Result, doubt, kept, read
 from ..studies.plan import is_table
 from .completion import complete_files
 
@@ -97,7 +97,7 @@ def description(result: Result) -> str:
     groups = {name: getattr(result, name) for name in ("summary", "observables", "certificate", "sensitivity")}
     blocks = [
         attributes,
-        *([name, *_lines(group)] for name, group in groups.items() if group),
+        *([name, *_lines(result, group)] for name, group in groups.items() if group),
         *([["error estimate", *_bars(result.error_estimate)]] if result.error_estimate else []),
         ["closed form", *(f"  {line}" for line in sources)] if sources else ["closed form: none"],
         [f"{result.mesh.x.size} nodes, {kept(result)}"],
@@ -105,9 +105,12 @@ def description(result: Result) -> str:
     return "\n\n".join("\n".join(block) for block in blocks)
 
 
-def _lines(group: Group) -> list[str]:
-    """The scalars of a group, one per line."""
-    return [f"  {name:25} {group[name]:<14.6g}{unit(group.unit(name)):16}{group.description(name)}" for name in group]
+def _lines(result: Result, group: Group) -> list[str]:
+    """The scalars of a group of a result, one per line."""
+    return [
+        f"  {name:25} {group[name]:<14.6g}{unit(group.unit(name)):16}{group.description(name)}{doubt(result, name)}"
+        for name in group
+    ]
 
 
 def _bars(estimate: Group) -> list[str]:

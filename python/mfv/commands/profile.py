@@ -37,7 +37,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_output(parser, "FILE.txt", "text to write (default: SCAN with .txt)")
     parser.add_argument("--unit", default="mm", help="unit of length of the case, and of the options (default: mm)")
     parser.add_argument("--file-unit", metavar="UNIT", help="unit of length of a file that names none (default: --unit)")
-    parser.add_argument("--inwards", action="store_true", help="heights of the file are the recess: positive into the material")
+    parser.add_argument(
+        "--inwards",
+        action="store_true",
+        help="heights of the file are the recess, positive into the material (default: if its heading says recess)",
+    )
     parser.add_argument("--spacing", type=number, metavar="LENGTH", help="distance of heights that have no positions")
     parser.add_argument("--line", help="map: number of the line from 1, middle, or mean (default: middle)")
     parser.add_argument("--along", choices=("x", "y"), help="map: direction of the line (default: x)")
@@ -55,7 +59,7 @@ def run(options: argparse.Namespace) -> None:
         options.file,
         unit=options.unit,
         file_unit=options.file_unit,
-        outwards=not options.inwards,
+        outwards=False if options.inwards else None,
         spacing=options.spacing,
         line=int(options.line) if (options.line or "").isdigit() else options.line,
         along=options.along,
@@ -65,7 +69,7 @@ def run(options: argparse.Namespace) -> None:
     )
     for note in profile.notes:
         print(f"mfv: {note}", file=sys.stderr)
-    heading = f"# {options.file.name}; height: distance by which the surface recedes\nx [{profile.unit}] height [{profile.unit}]\n"
+    heading = f"# {options.file.name}; recess: distance by which the surface recedes\nx [{profile.unit}] recess [{profile.unit}]\n"
     with written(path) as part, part.open("w", encoding="utf-8") as file:
         file.write(heading)
         np.savetxt(file, np.column_stack([profile.x, profile.height]), fmt="%.9g")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import os
+import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -304,11 +305,10 @@ def predict(test: PadTest, nodes: int = 101) -> Prediction:
     if not math.isfinite(x):
         raise input_error(f"{about} has no tension on the surface of the specimen over the cycle, so no hot spot: check its loads")
     try:
-        lives = {
-            (parameter, place): value
-            for place in PLACES
-            for parameter, value in lives_of(test, _cycle(result, x, place, test.critical_length)).items()
-        }
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # those of the result are among the notes
+            cycles = {place: _cycle(result, x, place, test.critical_length) for place in PLACES}
+        lives = {(name, place): value for place, cycle in cycles.items() for name, value in lives_of(test, cycle).items()}
     except ValueError as error:
         raise input_error(f"{about} has no predicted life: {error}") from None
     notes = (*test.notes, *result.warnings)

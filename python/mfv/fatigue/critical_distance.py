@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..result import Result
-from ..stress import beneath
+from ..stress import beneath, radius_of
 from .stress_cycle import StressCycle, stress_cycle
 
 Array = NDArray[np.float64]
@@ -57,8 +57,9 @@ def averaged_cycle(
         turn, turn_weight = _rule(-0.5 * np.pi, 0.5 * np.pi, AROUND)
         direction = np.repeat(turn, ALONG)
         reach = np.full(AROUND, length)
-        if result.attributes.get(f"{body}_body", "").endswith("disk"):
-            reach = np.minimum(reach, 2.0 * result.scene[f"{body}_radius"] * np.cos(turn))
+        radius = radius_of(result, body)
+        if radius is not None and result.attributes[f"{body}_body"].endswith("disk"):
+            reach = np.minimum(reach, 2.0 * radius * np.cos(turn))
         distance = np.outer(reach, share**2).ravel()
         weights = np.outer(turn_weight * reach**2, 4.0 * share**3 * weight).ravel()
         weights /= np.sum(weights)

@@ -14,10 +14,11 @@ from typing import Callable, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..codes import NodeStatus
 from ..load_history import kept_states
 from ..result import Result
 from ..stress import surface_nodes
-from .stress_cycle import StressCycle, last_cycle, stress_cycle
+from .stress_cycle import StressCycle, last_cycle, stress_cycle, warn_of_doubt
 
 Array = NDArray[np.float64]
 
@@ -51,7 +52,8 @@ class ParameterMap:
 
     `angle`: of the normal of the critical plane, projected into the plane of the model, from the x axis, in radians, above -pi/2 and at most
     pi/2; the angle of a crack on this plane from the normal of a flat surface, counterclockwise. `tilt`: of the normal out of the plane of
-    the model, from 0 to pi/2; of two mirror images either. NaN for parameters that are invariants.
+    the model, from 0 to pi/2; of two mirror images either. NaN for parameters that are invariants. `units`: names of those of lengths
+    and of the values.
     """
 
     name: str
@@ -60,6 +62,7 @@ class ParameterMap:
     values: Array
     angle: Array
     tilt: Array | float = 0.0
+    units: tuple[str, str] = ("", "")
 
     @property
     def maximum(self) -> Peak:
@@ -80,7 +83,7 @@ def smith_watson_topper(cycle: StressCycle) -> ParameterMap:
     def value(normal: Array, _shear: Array) -> Array:
         return np.asarray(np.maximum(np.max(normal, axis=0), 0.0) * 0.5 * np.ptp(normal_strain(cycle, normal), axis=0))
 
-    return _critical_plane("Smith-Watson-Topper", cycle, value)
+    return _critical_plane("Smith-Watson-Topper", cycle, value, cycle.units)
 
 
 def fatemi_socie(cycle: StressCycle, *, yield_strength: float, k: float = 1.0) -> ParameterMap:
@@ -93,7 +96,7 @@ def fatemi_socie(cycle: StressCycle, *, yield_strength: float, k: float = 1.0) -
         tension = np.maximum(np.max(normal, axis=0), 0.0)
         return np.asarray(_shear_amplitude(shear) / cycle.shear_modulus * (1.0 + k * tension / yield_strength))
 
-    return _critical_plane("Fatemi-Socie", cycle, value)
+    return _critical_plane("Fatemi-Socie", cycle, value, (cycle.units[0], "1"))
 
 
 def findley(cycle: StressCycle, *, k: float) -> ParameterMap:
@@ -102,7 +105,7 @@ def findley(cycle: StressCycle, *, k: float) -> ParameterMap:
     def value(normal: Array, shear: Array) -> Array:
         return np.asarray(_shear_amplitude(shear) + k * np.max(normal, axis=0))
 
-    return _critical_plane("Findley", cycle, value)
+    return _critical_plane("Findley", cycle, value, cycle.units)
 
 
 def crossland(cycle: StressCycle, *, k: float) -> ParameterMap:
@@ -130,13 +133,15 @@ def dang_van(cycle: StressCycle, *, k: float) -> ParameterMap:
 
 @dataclass(frozen=True)
 class Ruiz:
-    """Ruiz's parameters at the nodes over a cycle. `shear`: the largest absolute shear traction; `slip`: the range of the relative slip;
-    `tension`: the largest tension along the surface (0 in compression)."""
+    """Ruiz's parameters at the nodes over a cycle. `shear`: the largest absolute shear traction; `slip`: the range of the relative slip
+    while the surfaces touch, 0 at nodes that do not; `tension`: the largest tension along the surface (0 in compression). `units`: those of
+    `first` and `second`."""
 
     x: Array
     shear: Array
     slip: Array
     tension: Array
+    units: tuple[str, str] = ("force/length", "force^2/length^3")
 
     @property
     def first(self) -> Array:
@@ -157,14 +162,19 @@ def ruiz(result: Result, *, body: str = "lower", states: Sequence[int] | None = 
     """
     if result.attributes["friction_law"] == "none":
         raise ValueError("Ruiz's parameters need friction: without a &friction law there is neither shear nor slip")
+    warn_of_doubt(result, "largest_slip_range")
     numbers = last_cycle(result) if states is None else tuple(states)
     history = [kept_states(result).at(number) for number in numbers]
     x, y, slope = surface_nodes(result, body)
     along = normal_stress(stress_cycle(result, x, y, body=body, states=numbers), slope)
     tension = np.maximum(np.max(along, axis=0), 0.0)
+    touching = np.array([state.status != NodeStatus.OPEN for state in history])
     slips = np.array([state.slip for state in history])
+    slip = np.max(slips, axis=0, where=touching, initial=-np.inf) - np.min(slips, axis=0, where=touching, initial=np.inf)
     shears = np.array([state.shear for state in history])
-    return Ruiz(np.asarray(result.mesh.x), np.max(np.abs(shears), axis=0), np.ptp(slips, axis=0), tension)
+    length, force = (result.attributes[f"{of}_unit"] for of in ("length", "force"))
+    units = f"{force}/{length}", f"{force}^2/{length}^3"
+    return Ruiz(np.asarray(result.mesh.x), np.max(np.abs(shears), axis=0), np.maximum(slip, 0.0), tension, units)
 
 
 def crossland_constant(bending_limit: float, torsion_limit: float) -> float:
@@ -191,7 +201,7 @@ def findley_constant(bending_limit: float, torsion_limit: float) -> float:
     return float(ratio / np.sqrt(1.0 - ratio**2))
 
 
-def _critical_plane(name: str, cycle: StressCycle, value: Callable[[Array, Array], Array]) -> ParameterMap:
+def _critical_plane(name: str, cycle: StressCycle, value: Callable[[Array, Array], Array], units: tuple[str, str]) -> ParameterMap:
     """The largest value over all planes; `value` has it for the histories of `on_planes`, one plane per point."""
 
     def at(angle: Array, tilt: Array) -> Array:
@@ -202,7 +212,8 @@ def _critical_plane(name: str, cycle: StressCycle, value: Callable[[Array, Array
     is_outside = np.isnan(cycle.stress).any(axis=(0, -1))
     is_tilted = tilted[0] * (1.0 - MARGIN * np.sign(tilted[0])) > best  # also where both are -inf outside
     best, angle, tilt = (np.where(is_tilted, *both) for both in zip(tilted, (best, angle, tilt)))
-    return ParameterMap(name, cycle.x, cycle.y, *(np.where(is_outside, np.nan, one) for one in (best, *in_range(angle, tilt))))
+    best, angle, tilt = (np.where(is_outside, np.nan, one) for one in (best, *in_range(angle, tilt)))
+    return ParameterMap(name, cycle.x, cycle.y, best, angle, tilt, units)
 
 
 def _largest(at: Callable[[Array, Array], Array], shape: tuple[int, ...], angles: int, tilts: int) -> tuple[Array, Array, Array]:
@@ -256,7 +267,7 @@ def _shear_amplitude(shear: Array) -> Array:
 
 
 def _invariant(name: str, cycle: StressCycle, values: Array) -> ParameterMap:
-    return ParameterMap(name, cycle.x, cycle.y, values, np.full(cycle.x.shape, np.nan), np.nan)
+    return ParameterMap(name, cycle.x, cycle.y, values, np.full(cycle.x.shape, np.nan), np.nan, cycle.units)
 
 
 def normal_stress(cycle: StressCycle, angle: Array) -> Array:

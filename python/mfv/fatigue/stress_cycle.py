@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -18,18 +20,24 @@ Array = NDArray[np.float64]
 #: The stresses of a cycle, in this order along the last dimension.
 COMPONENTS = ("sigma_xx", "sigma_yy", "sigma_xy", "sigma_zz")
 
+#: Observables that are in doubt if the stresses of a body are: {} is its name.
+STRESSES = ("peak_pressure", "peak_shear", "{}_tension", "largest_{}_tension", "largest_{}_von_mises")
+
 #: States are equal if their loads and tractions differ by less, relative to the ranges over the load history.
 EQUAL_STATES = 1.0e-3
 
 #: A load whose range is smaller, relative to its largest value, is constant.
 CONSTANT = 1.0e-6
 
+#: A point is at an interface if its depth differs by less, relative to it.
+ROUND_OFF = 4.0 * float(np.finfo(np.float64).eps)
+
 
 @dataclass(frozen=True)
 class StressCycle:
     """Stresses over a cycle at the points (x, y), lengths, of any shape; `stress` has the shape (states, *shape, 4) and the components
     sigma_xx, sigma_yy, sigma_xy, sigma_zz [force/length^2], tension positive. The body is isotropic with a `shear_modulus`
-    [force/length^2] and a `poisson_ratio`. Stresses from anywhere will do.
+    [force/length^2] and a `poisson_ratio`. `units`: names of those of lengths and stresses, for pictures. Stresses from anywhere will do.
     """
 
     x: Array
@@ -37,6 +45,7 @@ class StressCycle:
     stress: Array
     shear_modulus: float
     poisson_ratio: float
+    units: tuple[str, str] = ("", "")
 
     def __post_init__(self) -> None:
         for name in ("x", "y", "stress"):
@@ -66,7 +75,7 @@ class StressCycle:
         every = tuple(range(share.ndim))
         averaged = np.tensordot(self.stress, share, axes=([axis + 1 for axis in every], every))
         x, y = (np.asarray(np.sum(share * values)) for values in (self.x, self.y))
-        return StressCycle(x, y, averaged, self.shear_modulus, self.poisson_ratio)
+        return dataclasses.replace(self, x=x, y=y, stress=averaged)
 
 
 def stress_cycle(
@@ -76,22 +85,64 @@ def stress_cycle(
 
     `body`: 'lower' or 'upper'. `states`: the numbers in `result.steps`, from 1, of the states of the cycle; those of `last_cycle` by
     default. The states of a result are its turning points; `mfv.load_history.with_states_between` computes more, which a cycle out of
-    phase needs. Raises ValueError for an anisotropic body, and as `last_cycle` and as `mfv.stress.stress`.
+    phase needs. Elastic constants are those of the layer of the points. Raises ValueError for points in several materials, for an
+    anisotropic one, and as `last_cycle` and as `mfv.stress.stress`. Warns if the mesh does not resolve the stresses of the body.
     """
-    if f"{body}_compliance_11" in result.scene:
-        raise ValueError(
-            f"the {body} body is anisotropic: pass its stresses (mfv.stress.stress) and the constants of an isotropic material to "
-            "mfv.fatigue.StressCycle"
-        )
     across, up = (np.array(values, dtype=np.float64) for values in np.broadcast_arrays(x, y))
+    shear_modulus, poisson_ratio = _constants(result, body, up)
+    warn_of_doubt(result, *(name.format(body) for name in STRESSES))
     numbers = last_cycle(result) if states is None else tuple(states)
     result = kept_states(result)
     fields = [stress(result, across, up, body=body, step=number) for number in numbers]
     components = [np.stack([field[name].reshape(across.shape) for name in COMPONENTS], axis=-1) for field in fields]
-    scene = result.scene
-    return StressCycle(
-        across, up, np.stack(components), float(scene[f"{body}_shear_modulus"]), float(scene[f"{body}_poisson_ratio"])
-    )
+    units = result.mesh.unit("x"), result.state.unit("pressure")
+    return StressCycle(across, up, np.stack(components), shear_modulus, poisson_ratio, units)
+
+
+def warn_of_doubt(result: Result, *names: str) -> None:
+    """A Python warning with those of these observables that the mesh does not resolve, if there are any."""
+    doubtful = [name for name in names if name in result.unresolved]
+    if doubtful:
+        warnings.warn(
+            f"the mesh does not resolve {', '.join(doubtful)}, on which fatigue depends: see the result's warnings", stacklevel=3
+        )
+
+
+def _constants(result: Result, body: str, y: Array) -> tuple[float, float]:
+    """Shear modulus [force/length^2] and Poisson's ratio of a body where its points are at y. Raises ValueError for points in several
+    materials, or in an anisotropic one."""
+    name, about = _material(result, body, y)
+    if f"{name}_compliance_11" in result.scene:
+        raise ValueError(
+            f"{about} is anisotropic: pass its stresses (mfv.stress.stress) and the constants of an isotropic material to "
+            "mfv.fatigue.StressCycle"
+        )
+    return float(result.scene[f"{name}_shear_modulus"]), float(result.scene[f"{name}_poisson_ratio"])
+
+
+def _material(result: Result, body: str, y: Array) -> tuple[str, str]:
+    """The material of a body where its points are at y: the beginning of its names in `result.scene`, and its name for messages. Raises
+    ValueError for points in several materials."""
+    if body not in BODIES:
+        raise ValueError(f"body must be 'lower' or 'upper', not '{body}'")
+    scene, about = result.scene, f"the {body} body"
+    layers = range(1, int(scene.get(f"{body}_layers", 0)) + 1)
+    if not layers:
+        return body, about
+    materials = [(f"{body}_layer_{number}", f"layer {number} of {about}") for number in layers]
+    if any(name.startswith(f"{body}_base_") for name in scene):
+        materials.append((f"{body}_base", f"{about} below its layers"))
+    depth = -y if body == "lower" else y
+    interfaces = np.cumsum([scene[f"{name}_thickness"] for name, _ in materials[: len(layers)]])
+    # At an interface stresses are those of the layer above it.
+    number = np.searchsorted(interfaces * (1.0 + ROUND_OFF), depth[depth >= 0.0])
+    found = np.unique(number[number < len(materials)])
+    if found.size > 1:
+        raise ValueError(
+            f"the points are in {' and '.join(materials[place][1] for place in found)}: strains and lives are those of one material; choose "
+            f"points between two interfaces, which are at the depths {', '.join(f'{depth:.6g}' for depth in interfaces)}"
+        )
+    return materials[found[0]] if found.size else materials[0]
 
 
 def last_cycle(result: Result) -> tuple[int, ...]:

@@ -71,10 +71,14 @@ class ContactLoads:
         columns = {"time": self.t}
         for side, values in (("left", self.left), ("right", self.right)):
             columns |= {f"{side}_{name}": column for name, column in values._asdict().items()}
-        for name, bulk in (("lower_bulk_stress", self.lower_bulk), ("upper_bulk_stress", self.upper_bulk)):
-            if bulk is not None:
-                columns[f"{name}_error"] = bulk.error
-        return columns
+        return columns | {f"{name}_error": errors for name, errors in self._errors().items()}
+
+    def _errors(self, edge: str | None = None) -> dict[str, Array]:
+        """Errors of the columns of `table` that have them."""
+        at = {"left": self.left, "right": self.right}.get(edge or "")
+        errors = {} if at is None else {"normal_intensity": at.K_N_error, "shear_intensity": at.K_T_error}
+        bulks = {"lower_bulk_stress": self.lower_bulk, "upper_bulk_stress": self.upper_bulk}
+        return errors | {name: bulk.error for name, bulk in bulks.items() if bulk is not None}
 
     def history(
         self,
@@ -99,13 +103,12 @@ class ContactLoads:
         return [Step(**target) for target in targets]
 
     def write(self, path: str | os.PathLike[str], *, moment: bool = False, edge: str | None = None) -> None:
-        """Write the table as a text that `&history file='...'` reads. Raises OSError; otherwise as `history`."""
+        """Write the table as a text that `&history file='...'` reads, with largest errors and notes as comments. Raises OSError; otherwise
+        as `history`."""
         self._check_contact()
-        _write(
-            Path(path),
-            f"# {self.source}: loads per unit thickness, x = 0 at {self.centre:.9g} along the surface",
-            self.table(moment=moment, edge=edge),
-        )
+        heading = [f"{self.source}: loads per unit thickness, x = 0 at {self.centre:.9g} along the surface"]
+        heading += [f"error of {name}: at most {np.max(errors[self.loaded]):.2g}" for name, errors in self._errors(edge).items()]
+        _write(Path(path), "\n".join(f"# {line}" for line in [*heading, *self.notes]), self.table(moment=moment, edge=edge))
 
     def write_edges(self, path: str | os.PathLike[str]) -> None:
         """Write the edges with K_N, K_T and their errors as a text with a comma between columns. Raises OSError."""
@@ -295,6 +298,9 @@ def _notes(
             notes.append(
                 f"no bulk stress of the {of_body.body} body: fewer than 2 nodes with stresses lie beside the contact (bulk_range)"
             )
+    if traces.stress is not None and other is None:
+        without = "upper" if traces.body == "lower" else "lower"
+        notes.append(f"no bulk stress of the {without} body, so none acts on it; name its surface by opposite (--opposite)")
     return notes
 
 

@@ -27,13 +27,14 @@ class Assessment(NamedTuple):
     dissipation_error: Array
     stiffness_error: Array
     force_error: Array  #: largest difference of force at MFV's events, over the force amplitude
+    warnings: tuple[str, ...] = ()  #: of the measurement
 
     def __str__(self) -> str:
         lines = ["   amplitude  dissipation     error    stiffness     error   force error"]
-        for u, _, d, k, *errors in zip(*self):
+        for u, _, d, k, *errors in zip(*self[:-1]):
             de, ke, fe = (f"{round(100.0 * error, 2) + 0.0:.2f}%" for error in errors)  # 0.0: no negative zeros
             lines.append(f"{u:12.4e} {d:12.4e} {de:>9} {k:12.4e} {ke:>9} {fe:>13}")
-        return "\n".join(lines)
+        return "\n".join([*lines, *(f"warning: {text}" for text in self.warnings)])
 
 
 def assess(model: Model, measured: Measurement) -> Assessment:
@@ -56,7 +57,7 @@ def assess(model: Model, measured: Measurement) -> Assessment:
             np.max(np.abs(forces - expected)) / amplitude,
         )
         rows.append((cycle.amplitude, amplitude, cycle.dissipation, cycle.stiffness, *errors))
-    return Assessment(*np.array(rows).T)
+    return Assessment(*np.array(rows).T)._replace(warnings=measured.warnings)
 
 
 def _path(cycle: Cycle) -> tuple[Array, Array]:

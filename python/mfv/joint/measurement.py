@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._datum import datums_of
+from ..case import Case
 from ..result import Group, Result
 from ..scene import Scene, Solver, Step
 from .backbone import Backbone
@@ -35,6 +36,9 @@ ROUND_OFF = 1.0e-8
 #: used. It is below 0.02 where the contact remembers its turning points alone, and 0.08 or more after pressing with friction and full
 #: coupling (docs/joints.md).
 MEMORY = 0.04
+
+#: The observable by which the mesh resolves a cycle.
+DISSIPATION = "cycle_dissipation"
 
 
 class Cycle(NamedTuple):
@@ -78,6 +82,9 @@ class Measurement(NamedTuple):
 
     backbone: Backbone  #: first loading after pressing, until all slides
     cycles: list[Cycle]  #: of growing amplitude, one after the other on the same contact
+    warnings: tuple[str, ...] = ()  #: of the runs, those of cycles smaller than the largest after their force ratio
+    unresolved: tuple[str, ...] = ()  #: observables that the mesh does not resolve in one of the cycles
+    source: str = ""  #: the scene and its units
 
     @property
     def sliding_force(self) -> float:
@@ -127,8 +134,29 @@ def measure(scene: Scene, force_ratios: Sequence[float] = RATIOS, *, repeats: in
     origin = len(scene.steps)
     _check_origin(result.history, origin)
     cycles = [_last_cycle(result.history, origin, step) for step in range(origin + 2, origin + 2 * len(ratios) + 1, 2)]
-    backbone = _backbone(scene, result, cycles[-1].force_amplitude)
-    return Measurement(backbone._replace(doubt=_doubt(backbone, cycles)), cycles)
+    with _pressed(scene, result).contact() as contact:
+        contact.run(check=True)
+        warnings, unresolved = _doubts(contact, result, dict(zip(ratios, cycles)))
+        backbone = _backbone(contact, origin, cycles[-1].force_amplitude)
+    units = f"displacements [{result.mesh.unit('x')}], forces [{result.summary.unit('normal_force')}]"
+    source = f"{result.title or scene.name}: {units}; {len(result.mesh.x)} nodes, mfv {result.attributes['mfv_version']}"
+    return Measurement(backbone._replace(doubt=_doubt(backbone, cycles)), cycles, warnings, unresolved, source)
+
+
+def _doubts(contact: Case, result: Result, cycles: dict[float, Cycle]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Warnings, and observables that are not resolved: of the largest cycle those of its `result`, of smaller ones, by their force ratio,
+    until the mesh resolves their dissipation."""
+    warnings, unresolved = list(result.warnings), set(result.unresolved)
+    for ratio, cycle in list(cycles.items())[:-1]:
+        with contact.trial():
+            contact.advance(tangential_force=cycle.force_amplitude, check=True)
+            contact.advance(tangential_force=-cycle.force_amplitude, cycles=1, check=True)
+            small = contact.result()
+        if DISSIPATION not in small.unresolved or DISSIPATION in result.unresolved:
+            break
+        warnings += [f"force ratio {ratio:g}: {text}" for text in small.warnings if DISSIPATION in text]
+        unresolved.update(small.unresolved)
+    return tuple(warnings), tuple(sorted(unresolved))
 
 
 def _doubt(backbone: Backbone, cycles: list[Cycle]) -> str:
@@ -189,24 +217,27 @@ def _last_cycle(history: Group, origin: int, step: int) -> Cycle:
     return Cycle(shift, force[begin:], float(lost[-1] - lost[0]))
 
 
-def _backbone(scene: Scene, result: Result, force: float) -> Backbone:
-    """First loading of a scene on the mesh of a result, to a force, and on until all slides."""
+def _pressed(scene: Scene, result: Result) -> Scene:
+    """A scene on the mesh of a result that shears it."""
     pressed = copy.deepcopy(scene)
     pressed.output = None
     pressed.solver = _by_events(scene)
     if pressed.mesh is not None and pressed.mesh.refine == "edges":
         others = {"refine": None, "nodes": None, "half_width": None, "half_angle": None}
         pressed.mesh = dataclasses.replace(pressed.mesh, ends=_wider(result.mesh), **others)
-    with pressed.contact() as contact:
-        contact.run(check=True)
-        origin = contact.loads
-        contact.advance(tangential_force=force, check=True)
-        for _ in range(DOUBLINGS):
-            contact.advance(shift=contact.loads.shift - origin.shift, relative=True, check=True)
-            if contact.loads.stick_nodes == 0:
-                break
-        history = contact.result().history
-    sheared = np.append(np.flatnonzero(history.step <= len(scene.steps))[-1], np.flatnonzero(history.step > len(scene.steps)))
+    return pressed
+
+
+def _backbone(contact: Case, steps: int, force: float) -> Backbone:
+    """First loading of a contact after its `steps`, to a force, and on until all slides."""
+    origin = contact.loads
+    contact.advance(tangential_force=force, check=True)
+    for _ in range(DOUBLINGS):
+        contact.advance(shift=contact.loads.shift - origin.shift, relative=True, check=True)
+        if contact.loads.stick_nodes == 0:
+            break
+    history = contact.result().history
+    sheared = np.append(np.flatnonzero(history.step <= steps)[-1], np.flatnonzero(history.step > steps))
     forces = history.tangential_force[sheared]
     forces[0] = 0.0  # it may be round-off
     return _points(history.shift[sheared] - origin.shift, forces)

@@ -9,12 +9,15 @@ from dataclasses import asdict, dataclass, fields
 from functools import cached_property
 from operator import index
 from pathlib import Path
-from typing import Any, ClassVar, NamedTuple, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .backbone import Backbone
+
+if TYPE_CHECKING:
+    from .measurement import Measurement
 
 Array = NDArray[np.float64]
 
@@ -163,10 +166,11 @@ class Iwan(_Saved):
         slid = np.maximum(np.asarray(amplitude, dtype=np.float64)[..., None] - self.slip, 0.0)
         return np.asarray(4.0 * slid @ (self.stiffness * self.slip))
 
-    def c_source(self, name: str = "joint") -> str:
+    def c_source(self, name: str = "joint", measured: Measurement | None = None) -> str:
         """The joint as a C header that needs no other file: an evaluator without allocation, and the constant `name`.
 
-        Raises ValueError if the name is not one of C, or has a meaning there or in the header.
+        `measured`: what it was fitted to, for a comment with case, units, amplitudes and warnings. Raises
+        ValueError if the name is not one of C, or has a meaning there or in the header.
         """
         if not (name.isidentifier() and name.isascii()):
             raise ValueError(f"{name!r} is not a name in C")
@@ -177,7 +181,17 @@ class Iwan(_Saved):
             for what, values in (("stiffness", self.stiffness), ("slip", self.slip))
         ]
         made = f"static const mfv_joint {name} = {{{self.slip.size}, {name}_stiffness, {name}_slip, {self.elastic!r}}};"
-        return "\n".join([_C_HEADER.read_text(), *arrays, made, ""])
+        return "\n".join([_C_HEADER.read_text(), *_comment(measured), *arrays, made, ""])
+
+
+def _comment(measured: Measurement | None) -> list[str]:
+    """A comment in C about a measurement: its source, the amplitudes of its cycles, and its warnings."""
+    if measured is None:
+        return []
+    amplitudes = [cycle.amplitude for cycle in measured.cycles]
+    known = f"amplitudes from {min(amplitudes):.4g} to {max(amplitudes):.4g}, backbone to {measured.backbone.displacement[-1]:.4g}"
+    lines = [measured.source, known, *(f"warning: {text}" for text in measured.warnings)]
+    return [f"/* {line.replace('*/', '* /')} */" for line in lines if line]
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import functools
 import math
 import os
+import re
+import warnings
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from typing import TYPE_CHECKING, Any
@@ -303,6 +305,11 @@ class _Plan:
             raise input_error(
                 f"{self.loads.name}: {LIFE} needs a case in mm and N, as the material: length_unit='mm', force_unit='N'"
             )
+        if any(re.fullmatch(r"layer\(\d+\)%body", key) and value == 1 for key, value in self.loads.keys.items()):
+            raise input_error(
+                f"{self.loads.name}: {LIFE} is that of a lower body without layers; choose points of one of its materials and "
+                "mfv.fatigue.stress_cycle"
+            )
         modulus, of_material = self.loads.keys.get("body(1)%youngs_modulus"), material["youngs_modulus"]
         if modulus is not None and abs(modulus / of_material - 1.0) > SAME_MODULUS:
             raise input_error(
@@ -376,7 +383,9 @@ class _Plan:
             handle = created("mfv_create", scene)
         with Case._of_handle(handle) as case:
             case.run()
-            cycle = stress_cycle(case.result(), x, 0.0)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # `_with_flags` marks what is not resolved
+                cycle = stress_cycle(case.result(), x, 0.0)
         return comparison.lives_of(material, cycle, (parameter,))[parameter]
 
     def with_boundaries(self, table: xarray.Dataset, found: Sequence[Crossing]) -> xarray.Dataset:
