@@ -575,8 +575,8 @@ contains
                              'extend the surface, or round its end')
    end subroutine check_surface_ends
 
-   !> Friction that falls at once when a node begins to slip, or over less slip than intervals resolve. Over a slip D it falls within
-   !> a length M D/((mu_s - mu_k) p0) next to a stick zone, with the modulus M and the largest pressure p0 (docs/theory.md).
+   !> Friction that falls at once when a node begins to slip, or over less slip than intervals resolve. Over a slip D it falls
+   !> within a length M D/((mu_s - mu_k) p0) next to a stick zone, with the modulus M and the largest pressure p0 (docs/guide.md).
    subroutine check_fall(simulation, unresolved)
       type(simulation_type), intent(in) :: simulation
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
