@@ -23,7 +23,7 @@ BODIES = """&body shape='half_plane', shear_modulus=1.0, poisson_ratio=0.3 /
 """
 COMPLETE, INPUT, EARLY = 0, 2, 3
 #: Examples with a warning, which their text or the guide explains.
-WARNED_OF = ("disk_on_plane", "press_fit", "wear")
+WARNED_OF = ("disk_on_plane", "press_fit", "static_kinetic", "wear")
 
 
 def mfv_run(*arguments, cwd):
@@ -224,7 +224,7 @@ def test_error_estimate_in_summary_and_file(tmp_path):
     with h5py.File(tmp_path / "key.h5") as result, h5py.File(tmp_path / "option.h5") as other:
         estimate = result["error_estimate"]
         names = ("contact_half_width", "stick_ratio", "peak_pressure", "peak_shear", "dissipation", "lower_tension")
-        # Every observable but prescribed forces, counts and numbers.
+        # Every observable but prescribed forces and counts.
         quantities = {name.removesuffix("_error") for name in estimate if name.endswith("_error")}
         assert set(estimate) == {"nodes", "companion_nodes"} | {
             name + end for name in quantities for end in ("", "_error", "_order", "_companions")
@@ -232,7 +232,7 @@ def test_error_estimate_in_summary_and_file(tmp_path):
         assert quantities == {
             *names, "contact_length", "contact_centre", "approach", "shift", "lower_tension_x", "largest_lower_tension",
             "largest_lower_tension_x", "largest_pressure", "largest_pressure_x", "largest_shear", "largest_shear_x", "smallest_stick_ratio",
-            "largest_stick_ratio", "largest_slip_range", "largest_slip_range_x",
+            "largest_stick_ratio", "largest_slip_range", "largest_slip_range_x", "half_width_number", "pressure_number", "shear_number",
             *(f"{side}_{name}" for side in ("left", "right") for name in (
                 "normal_intensity", "shear_intensity", "slip_zone", "asymptotic_slip_zone", "edge_reach",
             )),
