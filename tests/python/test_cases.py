@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import shutil
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -114,3 +115,46 @@ def test_an_inadmissible_state_is_not_complete(run) -> None:
     assert result.outcome == "inadmissible"
     assert "friction limit" in result.message
     assert result.summary.largest_residual < 1e-8
+
+
+@pytest.mark.parametrize("law", [{"law": "static_kinetic"}, {"law": "weakening", "weakening_distance": 1e-8}])
+def test_friction_that_falls_within_an_interval_is_not_resolved(law: dict[str, Any]) -> None:
+    """On any mesh at once; over a slip on coarse ones. The prescribed force is exact."""
+
+    def sheared(nodes: int, **keys: Any) -> mfv.Result:
+        return mfv.Scene(
+            mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.3),
+            mfv.Body.disk(1.0, shear_modulus=1.0, poisson_ratio=0.3),
+            mesh=mfv.Mesh(nodes=nodes),
+            friction=mfv.Friction(**keys),
+            output=mfv.Output(error_estimate=True),
+            steps=[mfv.Step(normal_force=1e-3), mfv.Step(tangential_force=3e-4)],
+        ).run(check=True)
+
+    found = sheared(61, mu_static=0.5, mu_kinetic=0.4, **law)
+    assert {"stick_ratio", "peak_shear", "dissipation"} <= set(found.unresolved)
+    assert not {"tangential_force", "contact_half_width", "peak_pressure"} & set(found.unresolved)
+    assert "stick_ratio" not in sheared(61, law="weakening", mu_static=0.5, mu_kinetic=0.4, weakening_distance=1e-3).unresolved
+    assert (
+        "stick_ratio"
+        not in sheared(61, law=law["law"], mu_static=0.5, mu_kinetic=0.5, **{k: v for k, v in law.items() if k != "law"}).unresolved
+    )
+
+
+def test_dimensionless_numbers_have_the_bars_of_their_factors() -> None:
+    result = mfv.Scene(
+        mfv.Body.half_plane(shear_modulus=1.0, poisson_ratio=0.3),
+        mfv.Body.disk(1.0, shear_modulus=1.0, poisson_ratio=0.3),
+        mesh=mfv.Mesh(nodes=61),
+        friction=mfv.Friction.coulomb(0.5),
+        output=mfv.Output(error_estimate=True),
+        steps=[mfv.Step(normal_force=1e-3), mfv.Step(tangential_force=3e-4), mfv.Step(tangential_force=-3e-4, cycles=1)],
+    ).run(check=True)
+
+    def relative(name: str) -> float:
+        return float(result.error_bar(name) / result.observables[name])
+
+    assert relative("dissipation_number") == pytest.approx(relative("cycle_dissipation"), rel=1e-12)
+    assert relative("stiffness_number") == pytest.approx(relative("tangential_stiffness"), rel=1e-12)
+    assert relative("shear_number") == pytest.approx(relative("peak_shear") + relative("contact_half_width"), rel=1e-12)
+    assert "force_number_error" not in result.error_estimate

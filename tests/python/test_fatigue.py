@@ -1,5 +1,6 @@
 """Fatigue parameters, critical distances, lives and short cracks against closed forms and other algorithms."""
 
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -842,6 +843,16 @@ def test_points_and_averages_in_several_materials_are_refused() -> None:
         fatigue.edge_crack(result, 0.1, [0.01, 0.1])
     assert fatigue.averaged_cycle(result, 0.1, 0.2, method="point").youngs_modulus == pytest.approx(70000.0)
     assert fatigue.ruiz(result).tension.max() > 0.0
+
+
+def test_cracks_that_are_not_short_against_a_layer_are_in_doubt() -> None:
+    result = coated(HARD)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        warnings.filterwarnings("ignore", message="the mesh does not resolve")
+        fatigue.edge_crack(result, 0.1, [5e-4, 9e-4])
+        with pytest.raises(UserWarning, match="a crack of 0.01 is not short against the first layer of the lower body, 0.02"):
+            fatigue.edge_crack(result, 0.1, [1e-3, 0.01])
 
 
 def test_a_coating_of_the_same_material_changes_no_parameter() -> None:

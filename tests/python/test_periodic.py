@@ -272,3 +272,25 @@ def test_a_smooth_profile_has_no_kink_where_periods_meet() -> None:
     one, other = found
     np.testing.assert_allclose(np.sort(one.state.pressure), np.sort(other.state.pressure), rtol=0, atol=1e-9 * FULL)
     assert len(one.attributes["warnings"].splitlines()) == len(other.attributes["warnings"].splitlines()) > 0
+
+
+def test_full_contact_of_an_incompressible_layer_by_every_solver() -> None:
+    """Any pressure that is the same everywhere presses such a layer on a rigid base by nothing: the force alone says how large it is."""
+    layer = mfv.Layer(thickness=0.3, shear_modulus=3000.0, poisson_ratio=0.5)
+    found = []
+    for solver in ("auto", "reduced", "dgesv", "fft"):
+        scene = Scene(
+            Body.half_plane(rigid=True, layers=[layer]),
+            Body.wave(1e-4, 1.0, rigid=True),
+            mesh=Mesh(nodes=60, period=1.0),
+            friction=Friction.coulomb(0.5),
+            solver=mfv.Solver(linear_solver=solver),
+            steps=[Step(normal_force=20.0), Step(tangential_force=0.2), Step(tangential_force=-0.2, cycles=2)],
+        )
+        found.append(scene.run(check=True))
+    for result in found:
+        assert np.all(result.state.pressure > 0.0)
+        assert np.mean(result.state.pressure) == pytest.approx(20.0, rel=1e-12)
+        np.testing.assert_allclose(result.state.pressure, found[2].state.pressure, rtol=1e-9)
+        np.testing.assert_allclose(result.state.shear, found[2].state.shear, atol=1e-9 * 20.0)
+        assert result.summary.events == found[2].summary.events

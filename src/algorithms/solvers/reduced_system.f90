@@ -104,6 +104,9 @@ contains
       ! The inverse may be inaccurate: repeat with a new one.
       if (singular .and. .not. undetermined(self, model, constraints)) &
          call respond(self, model, constraints, start, .true., response, singular)
+      ! All of a period touches: the pressure that presses an incompressible layer everywhere alike is that of the force alone.
+      if (singular .and. model%scene%repeat_length() > 0.0_wp .and. all(in_contact(constraints%status))) &
+         call self%augmented%solve(model, constraints, start, response, singular)
    end subroutine solve
 
    !> State and rates. `recompute`: whether to recompute the inverse.
