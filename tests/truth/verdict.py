@@ -295,6 +295,11 @@ def bar_of(base: mfv.Result, path: str, value: float) -> float:
         return bar_of(base, f"observables/stick_ratio_{turning[1]}", math.nan) * float(base.observables.contact_length)
     if not name.endswith("_work"):
         return _error_of(base, EQUAL.get(name, public_name(path)))
+    return _relative_to_dissipation(base, value)
+
+
+def _relative_to_dissipation(base: mfv.Result, value: float) -> float:
+    """The relative bar of the last cycle's dissipation times a value."""
     error, of = _error_of(base, "cycle_dissipation"), abs(float(base.observables.cycle_dissipation))
     return error * abs(value) / of if of > 0.0 else error
 
@@ -305,6 +310,8 @@ def _bar_of_row(base: mfv.Result, path: str, row: int, value: float, last: float
         return bar
     if path == "cycles/dissipation" and row == 0:
         return max(bar, _error_of(base, "first_cycle_dissipation"))
+    if path == "cycles/loss_factor" and math.isnan(last):
+        return _relative_to_dissipation(base, value)
     return bar * max(1.0, abs(value / last)) if abs(last) > 0.0 else bar
 
 
