@@ -295,6 +295,7 @@ contains
       end associate
    end function poorest_patch
 
+   !> Number of nodes of a patch.
    pure integer function nodes_in(patch)
       type(zone_type), intent(in) :: patch
 
