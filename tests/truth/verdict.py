@@ -193,11 +193,11 @@ def _but_for_narrow_zones(verdict: Verdict, name: str, base: mfv.Result, fine: m
         return verdict
     if re.fullmatch(rf"{_STICK_POSITION}|.*_slip_zone", name):
         ends = [first if "left" in name else last - 1 for first, last in wide or every]
-        places = [fine.mesh.x[end] for end in ends]
+        along = fine.mesh.arc if name.endswith("_slip_zone") and "arc" in fine.mesh else fine.mesh.x
+        places = along[ends]
         if name.endswith("_slip_zone"):
             edge = fine.observables.contact_centre + (0.5 if "right" in name else -0.5) * fine.observables.contact_length
-            along = fine.mesh.arc if "arc" in fine.mesh else fine.mesh.x
-            places = [abs(edge - along[end]) for end in ends]
+            places = np.abs(edge - places)
         explains = any(abs(place - verdict.value) <= NARROW * widths[end] for place, end in zip(places, ends))
         return verdict._replace(word="unknown") if explains else verdict
     own = len(_zones(base, statuses, 0.0 * np.asarray(base.mesh.x)))

@@ -11,6 +11,7 @@ module mfv_resolution
    use mfv_interior, only: has_interior
    use mfv_kinds, only: pi, wp
    use mfv_layers, only: layers_type
+   use mfv_load_extremes, only: load_extremes_type
    use mfv_motions, only: controlled_key, motion_approach, motion_count, motion_interference, motion_shift
    use mfv_node_status, only: holds, in_contact, slip_sign
    use mfv_observables, only: observable_count, observables, observed_type
@@ -531,17 +532,14 @@ contains
       type(contact_model_type) :: model
       type(contact_state_type) :: state
       logical, allocatable :: overlap(:)
-      integer :: extra, i, n, first
+      integer :: extra, n, first
 
       associate (mesh => simulation%contact%model, scene => simulation%contact%model%scene)
          if (scene%lower%is_matrix() .or. allocated(scene%mesh%ends) .or. scene%repeat_length() > 0.0_wp) return
          n = mesh%nodes()
          extra = min(mesh%spare_nodes(), n)
          if (extra < 1) return
-         associate (left => gap_at(scene, [(mesh%arc(1) - i*mesh%interval(), i=0, extra)]), &
-                    right => gap_at(scene, [(mesh%arc(n) + i*mesh%interval(), i=0, extra)]))
-            if (.not. (any(left(2:) < left(:extra)) .or. any(right(2:) < right(:extra)))) return
-         end associate
+         if (.not. (falls(mesh%arc(1), -1) .or. falls(mesh%arc(n), 1))) return
          model = mesh
       end associate
       call model%grow(extra)
@@ -554,6 +552,22 @@ contains
       if (first == 0) return
       call add_unresolved(unresolved, trim(all_quantities(simulation)), 'the surfaces overlap beyond the mesh, near x = '// &
                           to_text(model%x(first), 4), 'give a larger half_width in &mesh')
+
+   contains
+
+      !> Whether the gap falls again somewhere on the surfaces beyond the last node, at `arc`, on `side` (-1 left, 1 right).
+      logical function falls(arc, side)
+         real(wp), intent(in) :: arc
+         integer, intent(in) :: side
+         real(wp), dimension(0:extra) :: place, gap
+         integer :: i
+
+         associate (scene => simulation%contact%model%scene)
+            place = [(arc + side*i*simulation%contact%model%interval(), i=0, extra)]
+            gap = gap_at(scene, place)
+            falls = any(gap(1:) < gap(:extra - 1) .and. scene%touchable(place(1:)))
+         end associate
+      end function falls
    end subroutine check_beyond_mesh
 
    !> The end of a surface that is no corner by design: the pressure there has no limit.
@@ -561,17 +575,17 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(unresolved_type), allocatable, intent(inout) :: unresolved(:)
       type(patch_type), allocatable :: patches(:)
+      type(load_extremes_type) :: extremes
       character(:), allocatable :: names
-      logical :: now, before
+      logical :: now
 
-      before = simulation%extremes%at_end
-      if (simulation%ends_with_cycle()) before = simulation%cycles(simulation%cycle_count)%extremes%at_end
+      extremes = simulation%latest_extremes()
       call find_patches(simulation%contact%model, simulation%contact%state, patches)
       now = rises_at_end(simulation%contact%model, simulation%contact%state, patches)
       names = 'extremes'
       if (now) names = 'peak_pressure '//names
       if (now .and. simulation%contact%model%tangential) names = 'peak_shear '//names
-      if (now .or. before) &
+      if (now .or. extremes%at_end) &
          call add_unresolved(unresolved, names, 'the contact reaches the end of a surface, where the pressure has no limit', &
                              'extend the surface, or round its end')
    end subroutine check_surface_ends

@@ -129,10 +129,8 @@ contains
       type(load_extremes_type), intent(out) :: extremes
       integer :: i
 
-      extremes = self%extremes
-      if (self%ends_with_cycle()) then
-         extremes = self%cycles(self%cycle_count)%extremes
-      else
+      extremes = self%latest_extremes()
+      if (.not. self%ends_with_cycle()) then
          do i = 1, size(candidate_tension)
             call search(self, mark_of(mark_candidate, candidate_tension(i), 1), candidate_tension(i), extremes)
          end do
@@ -146,22 +144,12 @@ contains
    pure logical function has_largest_tension(self, side) result(has)
       class(run_state_type), intent(in) :: self
       integer, intent(in) :: side
+      type(load_extremes_type) :: extremes
 
-      if (self%ends_with_cycle()) then
-         has = is_among(self%cycles(self%cycle_count)%extremes)
-      else
-         has = is_among(self%extremes)
-      end if
-
-   contains
-
-      pure logical function is_among(extremes)
-         type(load_extremes_type), intent(in) :: extremes
-
-         associate (row => extremes%row(:, candidate_tension(side)), estimate => extremes%estimate(:, candidate_tension(side)))
-            is_among = any(row == extremes%last_row .and. estimate >= least_estimate*maxval(estimate))
-         end associate
-      end function is_among
+      extremes = self%latest_extremes()
+      associate (row => extremes%row(:, candidate_tension(side)), estimate => extremes%estimate(:, candidate_tension(side)))
+         has = any(row == extremes%last_row .and. estimate >= least_estimate*maxval(estimate))
+      end associate
    end function has_largest_tension
 
    !> The largest tension of the lower or `upper` body in the present state: of find_extremes, if it was searched for there.

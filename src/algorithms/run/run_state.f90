@@ -168,6 +168,7 @@ module mfv_run_state
       procedure :: padded
       procedure :: keeps_last_cycle
       procedure :: ends_with_cycle
+      procedure :: latest_extremes
       procedure :: stretch
    end type run_state_type
 
@@ -284,6 +285,14 @@ contains
       ends_with_cycle = self%cycle_count > 0
       if (ends_with_cycle) ends_with_cycle = self%cycles(self%cycle_count)%step >= self%extremes%step
    end function ends_with_cycle
+
+   !> The extremes of the last complete cycle or, where the run does not end with one, of the present stretch (load_extremes_type).
+   pure type(load_extremes_type) function latest_extremes(self)
+      class(run_state_type), intent(in) :: self
+
+      latest_extremes = self%extremes
+      if (self%ends_with_cycle()) latest_extremes = self%cycles(self%cycle_count)%extremes
+   end function latest_extremes
 
    !> What the extremes are taken over, see mfv_load_extremes.
    pure integer function stretch(self)
